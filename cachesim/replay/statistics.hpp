@@ -1,0 +1,49 @@
+// What a replay counts: plain numbers, added up by anyone, formatted elsewhere (cachesim/report).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "traces/header.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+/// Counts of one group of accesses. Every hit rate and every factor of the explanation is a ratio of these.
+struct Counters {
+    std::uint64_t rays = 0;           ///< ray starts, one per lane (0 in groups split by object kind)
+    std::uint64_t steps = 0;          ///< lane accesses to nodes and triangles
+    std::uint64_t lane_accesses = 0;  ///< lane accesses to anything
+    std::uint64_t warp_accesses = 0;  ///< access records
+    std::uint64_t sectors = 0;        ///< 32 B sectors looked up in L1, after coalescing
+    std::uint64_t l1_hits = 0;        ///< of those, found (a sector on its way counts as found)
+    std::uint64_t l2_sectors = 0;     ///< sectors asked of L2 = sectors - l1_hits
+    std::uint64_t l2_hits = 0;
+    std::uint64_t dram_sectors = 0;  ///< 32 B sectors read from DRAM = l2_sectors - l2_hits
+
+    Counters& operator+=(const Counters&);
+    bool operator==(const Counters&) const = default;
+};
+
+/// Counters of one ray type and bounce, split by kind of object. `rays` stands in `all` only.
+struct RayGroup {
+    traces::RayType ray = traces::RayType::camera;
+    std::uint8_t bounce = 0;
+    std::array<Counters, traces::object_kinds> by_kind{};  ///< index: traces::ObjectKind
+    std::uint64_t rays = 0;
+
+    Counters all() const;
+    bool operator==(const RayGroup&) const = default;
+};
+
+/// One launch on one GPU. Caches are empty when it begins.
+struct LaunchStatistics {
+    std::uint32_t sample = 0;      ///< first sample index of the launch
+    std::vector<RayGroup> groups;  ///< by ray type, then bounce; only those that occur
+
+    Counters all() const;
+    bool operator==(const LaunchStatistics&) const = default;
+};
+
+}  // namespace raycache::cachesim

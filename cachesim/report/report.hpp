@@ -1,0 +1,68 @@
+// From counts to findings: one row per strategy x N x GPU (x group), means over sample indices with 95 % confidence
+// intervals, ratios to a baseline paired by sample index, and the exact split of the traffic ratio into factors.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cachesim/replay/statistics.hpp"
+
+namespace raycache::cachesim {
+
+/// All launches of one strategy on one GPU.
+struct Series {
+    std::string scene, strategy, sequence, parameters, thread_map, gpu;
+    std::uint64_t spp = 0;
+    std::vector<LaunchStatistics> launches;  ///< one per sample index, ascending
+};
+
+/// A ratio of totals over sample indices (bytes over rays, this strategy's bytes/ray over the baseline's). half_width
+/// is that of its 95 % confidence interval: ratio estimator (Cochran 1977, section 6.3) over the indices, Student t;
+/// absent for one index. Against a baseline the residuals are taken index by index (paired), so what all strategies
+/// share cancels.
+struct Estimate {
+    double mean = 0;
+    std::optional<double> half_width;
+};
+
+/// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B.
+/// Each factor is this strategy's over the baseline's; their product is the ratio of DRAM bytes/ray exactly, computed
+/// from totals over all sample indices.
+struct Factors {
+    double work = 1, simt_efficiency = 1, coalescing = 1, l1_locality = 1, l2_locality = 1;
+    double product() const { return work * simt_efficiency * coalescing * l1_locality * l2_locality; }
+};
+
+enum class GroupBy { none, bounce, ray, object };  ///< ray: camera, bounce, shadow; object: node, triangle, texel
+
+struct Row {
+    std::string scene, strategy, sequence, parameters, thread_map, gpu,
+        group;  ///< group: "all", "bounce 1", "shadow 0", "node"
+    std::uint64_t spp = 0;
+    std::vector<std::uint32_t> samples;
+    Counters totals;
+    Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
+        dram_bytes_per_ray;
+    /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline
+    /// itself or where there is none or its sample indices differ (a note says so).
+    std::optional<Estimate> l2_bytes_ratio, dram_bytes_ratio;
+    std::optional<Factors> factors;
+};
+
+struct Report {
+    std::string baseline;
+    GroupBy by = GroupBy::none;
+    std::vector<Row> rows;
+    std::vector<std::string> notes;  ///< such as "no baseline row for …", "one sample index: no confidence interval"
+};
+
+/// Throws UsageError if `baseline` was given by the user but is in no series.
+Report make_report(const std::vector<Series>&, const std::string& baseline, GroupBy);
+
+std::string to_text(const Report&);
+std::string to_json(const Report&);
+std::string to_csv(const Report&);
+
+}  // namespace raycache::cachesim

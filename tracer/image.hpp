@@ -1,0 +1,37 @@
+// The one header behind which OpenImageIO stands: decode a texture, write a picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tracer/vec.hpp"
+
+namespace raycache::tracer {
+
+/// 8-bit RGBA texels, rows top to bottom; colour is sRGB-encoded as glTF's baseColorTexture is.
+struct Texture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;  ///< 4 * width * height
+    std::string name;                ///< for messages
+};
+
+/// Decodes a PNG or JPEG file held in memory. Grey becomes RGB, missing alpha 255. Throws Error naming `name`.
+Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
+
+/// Linear RGB, rows top to bottom.
+struct Image {
+    std::uint32_t width = 0, height = 0;
+    std::vector<Vec3> pixels;
+};
+
+/// Writes by extension: .exr and .hdr keep linear floats; .png and .jpg are tone mapped (exposure in stops, then a
+/// filmic curve, then sRGB). Throws UsageError for another extension (before rendering: see check_image_name), Error
+/// when the file cannot be written. No partial file stays behind.
+void write_image(const std::string& path, const Image&, float exposure_stops = 0);
+
+/// Throws UsageError unless write_image() knows the extension of `path`.
+void check_image_name(const std::string& path);
+
+}  // namespace raycache::tracer

@@ -1,0 +1,91 @@
+// A scene as the rest of the tracer sees it: one flat list of world-space triangles. Instances are already expanded.
+// Metres, Y up, right-handed; colours are linear Rec. 709.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tracer/image.hpp"
+#include "tracer/vec.hpp"
+
+namespace raycache::tracer {
+
+/// Called once per warning, one line without a newline. The program prints it on stderr.
+using Warn = std::function<void(const std::string&)>;
+
+struct Material {
+    std::string name;
+    Vec3 base_color{1, 1, 1};     ///< factor, multiplied with the texture
+    float alpha = 1;              ///< factor
+    int base_color_texture = -1;  ///< index into Scene::textures, or -1
+    bool alpha_mask = false;      ///< glTF alphaMode MASK: a texel below `alpha_cutoff` is a hole
+    float alpha_cutoff = 0.5F;
+    Vec3 emission{0, 0, 0};  ///< radiance, W sr^-1 m^-2, factor times strength
+};
+
+/// A pinhole camera.
+struct Camera {
+    std::string name;
+    Vec3 eye{0, 0, 0};
+    Vec3 forward{0, 0, -1};   ///< unit
+    Vec3 up{0, 1, 0};         ///< unit, orthogonal to forward
+    float vertical_fov = 45;  ///< degrees, in (0, 180)
+};
+
+/// A directional light of finite size.
+struct Sun {
+    Vec3 direction{0, 1, 0};          ///< unit, towards the sun
+    Vec3 irradiance{0, 0, 0};         ///< on a plane facing it, W m^-2
+    float angular_radius = 0.00465F;  ///< radians
+};
+
+struct Scene {
+    std::string name;        ///< file name without folder, or "courtyard(detail=…)"
+    std::uint64_t hash = 0;  ///< XXH3-64 of the source bytes (a .gltf: of its buffers and images too)
+
+    std::vector<Vec3> positions;         ///< world space, all finite
+    std::vector<Vec3> normals;           ///< unit, one per position, or empty if no mesh has any; (0,0,0) = face normal
+    std::vector<Vec2> texcoords;         ///< one per position, or empty if no mesh has any
+    std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise from the front
+    std::vector<std::uint16_t> material_of;  ///< one per triangle
+    std::vector<Material> materials;         ///< at least one
+    std::vector<Texture> textures;
+    std::vector<Camera> cameras;  ///< at least one; the first is the default
+    Vec3 sky{0, 0, 0};            ///< constant radiance from outside, 0 = none
+    std::optional<Sun> sun;
+
+    std::size_t triangle_count() const { return material_of.size(); }
+    Box bounds() const;
+};
+
+/// Where a scene comes from and how it is to be lit and seen.
+struct SceneRequest {
+    std::string source;        ///< path of a .glb or .gltf file, or a built-in scene's name
+    std::uint64_t detail = 0;  ///< built-in scenes: wanted number of triangles; 0 = the scene's default
+    enum class Sky { automatic, on, off } sky = Sky::automatic;  ///< automatic: on where the file has no emitter
+    std::string camera;                                          ///< name or index; empty = the first
+    std::optional<Vec3> eye, look_at;                            ///< both or neither; override `camera`
+    std::optional<float> vertical_fov;                           ///< degrees; overrides the camera's
+};
+
+/// Loads a file or builds a built-in scene, adds sky and sun where asked, and moves the chosen camera to cameras[0].
+/// Throws UsageError for unknown names (listing the valid ones), Error for bad files.
+Scene load_scene(const SceneRequest&, const Warn&);
+
+/// Reads a glTF 2.0 file (.glb or .gltf). Throws Error: missing, empty, truncated or not glTF; an accessor out of
+/// bounds; a required extension we lack; no triangle left. Triangles with a non-finite vertex are skipped with one
+/// warning that counts them. A file without cameras gets one that sees the whole scene.
+Scene load_gltf(const std::string& path, const Warn&);
+
+struct BuiltinScene {
+    std::string name, description;
+    std::uint64_t default_detail, min_detail, max_detail;  ///< triangles
+    Scene (*build)(std::uint64_t detail);
+};
+/// The registry of procedural scenes.
+const std::vector<BuiltinScene>& builtin_scenes();
+
+}  // namespace raycache::tracer

@@ -1,0 +1,65 @@
+// The head of a trace: where it came from, which memory regions it reads, which launches it holds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace raycache::traces {
+
+/// What kind of object a region holds. Stored in the file: append only.
+enum class ObjectKind : std::uint8_t { node = 0, triangle = 1, texel = 2 };
+inline constexpr unsigned object_kinds = 3;
+
+/// A link value that leads nowhere.
+inline constexpr std::uint32_t no_link = 0xffffffffu;
+
+/// An array of equal objects in the virtual memory of the imagined GPU.
+struct Region {
+    ObjectKind kind = ObjectKind::node;
+    std::uint64_t base = 0;          ///< byte address of element 0; a multiple of 2 MiB
+    std::uint32_t element_size = 0;  ///< bytes that one access reads, 1 … 4096
+    std::uint32_t stride = 0;        ///< bytes from one element to the next, >= element_size
+    std::uint32_t count = 0;         ///< elements, 0 … 2^30 - 1 where another region links to them
+
+    /// Optional successor table: `degree` links per element. A BVH node links to its children. The codec predicts a
+    /// lane's next access from it, and analyses derive BVH depth from it. A link is (region index << 30) | element
+    /// index, or `no_link`. Only regions 0 … 2 can be linked to, elements below 2^30 - 1.
+    std::uint8_t degree = 0;
+    std::vector<std::uint32_t> links;  ///< degree * count values
+
+    std::uint64_t address(std::uint32_t element) const { return base + std::uint64_t{element} * stride; }
+    bool operator==(const Region&) const = default;
+};
+
+/// How the trace was made, in the words of the command line. Free of anything that does not change the records
+/// (thread count, output name, time of day), so equal inputs give equal bytes.
+struct Provenance {
+    std::string program;           ///< "raycache 0.1.0"
+    std::string command;           ///< every option that shapes the records, spelled out
+    std::string scene;             ///< file name without folder, or the built-in scene's name and detail
+    std::uint64_t scene_hash = 0;  ///< XXH3-64 of the scene's content
+    std::string camera;
+    std::string sequence;       ///< "sobol"
+    std::string decorrelation;  ///< "micro-jitter"; the table calls it the strategy
+    std::string parameters;     ///< "K=2.5 s=2 mu=0.078125"; empty if the decorrelation has none
+    std::string thread_map;     ///< "tile" or "samples"
+    std::string layout;         ///< "bvh2"
+    std::uint64_t spp = 0;      ///< N, size of the sample set
+    std::uint64_t seed = 0;
+    std::uint32_t width = 0, height = 0;  ///< pixels
+    std::uint32_t bounces = 0;
+
+    bool operator==(const Provenance&) const = default;
+};
+
+struct Header {
+    Provenance provenance;
+    std::vector<Region> regions;          ///< 1 … 254
+    std::vector<std::uint32_t> launches;  ///< first sample index of each launch
+    std::uint32_t warps_per_launch = 0;
+
+    bool operator==(const Header&) const = default;
+};
+
+}  // namespace raycache::traces
