@@ -20,6 +20,13 @@ struct Texture {
 /// Decodes a PNG or JPEG file held in memory. Grey becomes RGB, missing alpha 255. Throws Error naming `name`.
 Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
+struct ImageSize {
+    std::uint32_t width = 0, height = 0;
+};
+
+/// What decode_image() would give, from the file's header alone. Throws as it does.
+ImageSize image_size(std::span<const std::uint8_t> bytes, const std::string& name);
+
 /// Linear RGB, rows top to bottom.
 struct Image {
     std::uint32_t width = 0, height = 0;

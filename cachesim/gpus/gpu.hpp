@@ -14,7 +14,8 @@ enum class SetIndex { modulo, xor_fold };
 struct CacheGeometry {
     std::uint64_t sets = 0, ways = 0;
     std::uint32_t line_bytes = 128, sector_bytes = 32;
-    SetIndex index = SetIndex::modulo;
+    SetIndex index = SetIndex::modulo;  ///< formulas: cachesim/cache/set_index.hpp
+    std::string policy = "lru";         ///< what to evict: a name of cache_policies()
 
     std::uint64_t bytes() const { return sets * ways * line_bytes; }
 };
@@ -28,7 +29,7 @@ struct Gpu {
     std::uint32_t l1_per_sm =
         1;             ///< independent L1s of an SM (Maxwell: 2); its resident warps are dealt out among them
     CacheGeometry l1;  ///< one of them
-    CacheGeometry l2;  ///< the whole L2
+    CacheGeometry l2;  ///< the whole L2; line and sector size as in L1
 };
 
 /// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). Throws UsageError for an

@@ -1,8 +1,16 @@
 // Functional replay of one launch on one GPU: which sectors hit where. Order only, no time.
 //
-// CTAs of 8 consecutive warps go to SMs in rotating order while there is room (each SM takes one, then the next SM),
-// later to whichever SM frees first. Resident warps of an SM take turns (loose round-robin), one warp access per turn;
-// SMs take turns.
+// A CTA is Gpu::warps_per_cta consecutive warps of the launch (the last may be shorter). An SM has room for
+// floor(warps_per_sm / warps_per_cta) CTAs, at least 1. CTA c starts on SM c mod n while there is room (each SM takes
+// one, then the next SM); a later CTA goes to whichever SM frees a slot first. SMs take turns in order of their number,
+// one warp access per turn; an SM without unfinished warps is passed over. A slot is free as soon as the last access of
+// its CTA is issued, and the next CTA takes it before the next SM's turn; so of two SMs that free a slot in the same
+// round, the one whose turn is earlier gets the earlier CTA. Resident warps of an SM take turns too (loose
+// round-robin): after warp slot s comes the next unfinished warp in slot order, slot 0 after the last. Warp slot =
+// CTA slot * warps_per_cta + place in the CTA; it reads through L1 number (warp slot mod l1_per_sm) of its SM.
+//
+// Ray starts cost no turn. Warps without an access take no turn, CTAs without one no slot. What a warp access misses in
+// L1 goes to L2 at once, sector by sector; what misses there is read from DRAM.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +26,14 @@ namespace raycache::cachesim {
 
 class Replay {
 public:
-    /// Caches start empty. `regions` is copied (without links).
+    /// Caches start empty. `regions` is copied (without links). Throws Error if the GPU breaks a rule of
+    /// cachesim/gpus/limits.hpp or a region is impossible.
     Replay(const Gpu&, const std::vector<traces::Region>& regions, std::uint32_t sample);
     ~Replay();
     Replay(Replay&&) noexcept;
 
     /// Hands over the next warp of the launch, in warp order. Simulates as far as needed to make room for it, so memory
-    /// stays bounded by the warps resident at once.
+    /// stays bounded by the warps resident at once. Throws Error if a record contradicts the regions.
     void push(std::shared_ptr<const traces::WarpTrace>);
 
     /// Runs what is left and returns the counts. Call once.

@@ -15,13 +15,15 @@ namespace raycache::cachesim {
 struct Series {
     std::string scene, strategy, sequence, parameters, thread_map, gpu;
     std::uint64_t spp = 0;
+    std::uint32_t sector_bytes = 32;         ///< of the GPU's caches: turns sectors into bytes
     std::vector<LaunchStatistics> launches;  ///< one per sample index, ascending
 };
 
 /// A ratio of totals over sample indices (bytes over rays, this strategy's bytes/ray over the baseline's). half_width
 /// is that of its 95 % confidence interval: ratio estimator (Cochran 1977, section 6.3) over the indices, Student t;
 /// absent for one index. Against a baseline the residuals are taken index by index (paired), so what all strategies
-/// share cancels.
+/// share cancels. The mean is NaN (text "-", JSON null, CSV empty) where the denominator is zero. Formulas:
+/// estimate.hpp.
 struct Estimate {
     double mean = 0;
     std::optional<double> half_width;
@@ -42,7 +44,7 @@ struct Row {
         group;  ///< group: "all", "bounce 1", "shadow 0", "node"
     std::uint64_t spp = 0;
     std::vector<std::uint32_t> samples;
-    Counters totals;
+    Counters totals;  ///< over all sample indices; in groups by object, `rays` are those of the whole launch
     Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
         dram_bytes_per_ray;
     /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline

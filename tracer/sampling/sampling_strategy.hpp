@@ -36,6 +36,7 @@ public:
     }
     const StrategySettings& settings() const { return settings_; }
     std::string parameters() const { return decorrelation_->parameters(); }
+    std::string warning() const { return decorrelation_->warning(); }
     std::uint32_t dimensions() const { return dimensions_; }
 
 private:
@@ -46,7 +47,8 @@ private:
 };
 
 /// `count` distinct sample indices out of 0 … spp-1, ascending: a seeded random subset, the same for every strategy.
-/// count >= spp gives all of them (spp must then fit memory; count is at most 2^20, else UsageError).
+/// count >= spp gives all of them. Throws UsageError for spp = 0 or above 2^32, for count = 0, and where more than 2^20
+/// indices would come out.
 std::vector<std::uint32_t> choose_sample_indices(std::uint64_t spp, std::uint64_t count, std::uint64_t seed);
 
 }  // namespace raycache::tracer

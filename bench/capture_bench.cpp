@@ -1,0 +1,101 @@
+// Capture (traversal, shading, encoding and writing the trace) against Embree's rtcIntersect1 / rtcOccluded1 on the same rays,
+// in turn within one repetition, so that a machine that slows down slows both.
+#include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/workload.hpp"
+#include "tracer/bvh/embree_reference.hpp"
+
+namespace raycache::bench {
+namespace {
+
+using namespace tracer;
+
+struct LoggedRay {
+    Ray ray;
+    bool shadow;
+};
+
+/// Lets the integrator run over Embree and keeps the rays it asked for.
+class RayLogger {
+public:
+    RayLogger(const EmbreeReference& embree, std::vector<LoggedRay>& log) : embree_(embree), log_(log) {}
+
+    void closest(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays, Hit* hits) {
+        for (; mask != 0; mask &= mask - 1) {
+            const int l = std::countr_zero(mask);
+            hits[l] = embree_.intersect(rays[l]);
+            log_.push_back({rays[l], false});
+        }
+    }
+    std::uint32_t occluded(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays) {
+        std::uint32_t blocked = 0;
+        for (; mask != 0; mask &= mask - 1) {
+            const int l = std::countr_zero(mask);
+            blocked |= std::uint32_t{embree_.occluded(rays[l])} << l;
+            log_.push_back({rays[l], true});
+        }
+        return blocked;
+    }
+    void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) {}
+
+private:
+    const EmbreeReference& embree_;
+    std::vector<LoggedRay>& log_;
+};
+
+std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeReference& embree) {
+    std::vector<LoggedRay> log;
+    RayLogger logger(embree, log);
+    PathIntegrator<RayLogger> integrator(scene().scene(), capture.camera(), scene().lights(), scene().texels(),
+                                         capture.strategy(), capture.settings().paths, logger);
+    std::array<PathLane, traces::warp_lanes> jobs;
+    std::array<Vec3, traces::warp_lanes> radiance;
+    for (std::uint32_t warp = 0; warp < capture.header().warps_per_launch; ++warp)
+        integrator.trace(capture.lane_jobs(0, warp, jobs), jobs, radiance);
+    return log;
+}
+
+void capture_against_embree(benchmark::State& state, const char* strategy) {
+    static const EmbreeReference embree(scene().scene());
+    const auto capture = make_capture(strategy);
+    const std::vector<LoggedRay> log = rays_of(*capture, embree);
+    const auto path = std::filesystem::temp_directory_path() / ("raycache_bench_" + std::to_string(getpid()) + ".rct");
+    for (auto _ : state) {
+        std::uint64_t rays = 0;
+        double ours = 0;
+        tbb::task_arena one_thread(1);
+        one_thread.execute([&] {
+            const double start = thread_seconds();
+            write_capture(*capture, path.string(), [&](std::uint64_t, std::uint64_t done) { rays += done; });
+            ours = thread_seconds() - start;
+        });
+        const double start = thread_seconds();
+        std::uint64_t found = 0;
+        for (const LoggedRay& r : log) found += r.shadow ? embree.occluded(r.ray) : embree.intersect(r.ray).found();
+        const double theirs = thread_seconds() - start;
+        benchmark::DoNotOptimize(found);
+        state.SetIterationTime(ours);
+        const double our_rate = static_cast<double>(rays) / ours, their_rate = static_cast<double>(log.size()) / theirs;
+        state.counters["rate_to_embree"] = our_rate / their_rate;
+        state.counters["Mrays_per_s"] = our_rate / 1e6;
+        state.counters["embree_Mrays_per_s"] = their_rate / 1e6;
+        state.counters["bytes_per_ray"] =
+            static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(rays);
+    }
+    std::filesystem::remove(path);
+}
+
+BENCHMARK_CAPTURE(capture_against_embree, coherent, "coherent")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture_against_embree, cranley_patterson, "cranley-patterson")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace raycache::bench

@@ -1,0 +1,66 @@
+#include "cachesim/gpus/gpu.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cachesim/gpus/gpu_file.hpp"
+#include "cachesim/gpus/presets.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// Far above any description of a GPU; keeps a wrong path from filling the memory.
+constexpr std::size_t most_file_bytes = std::size_t{1} << 20;
+
+std::string read_file(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw Error(fmt::format("{}: expected a .toml file that describes a GPU, found a folder", path));
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw Error(
+            fmt::format("{}: expected a .toml file that describes a GPU, found none to read ({}); check the path", path,
+                        std::strerror(errno)));
+    std::string text(most_file_bytes + 1, '\0');
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    if (text.size() > most_file_bytes)
+        throw Error(fmt::format("{}: expected a .toml file of at most {} bytes, found a longer one; check the path",
+                                path, most_file_bytes));
+    return text;
+}
+
+}  // namespace
+
+Gpu load_gpu(const std::string& name_or_path) {
+    if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
+        return parse_gpu(read_file(name_or_path), name_or_path);
+    std::vector<std::string> names;
+    for (const PresetText& preset : preset_texts()) {
+        if (preset.name == name_or_path) return parse_gpu(preset.toml, preset.name + ".toml");
+        names.push_back(preset.name);
+    }
+    throw UsageError(fmt::format("GPU: expected one of {} or the path of a .toml file, found \"{}\"",
+                                 fmt::join(names, ", "), name_or_path));
+}
+
+std::vector<GpuPreset> gpu_presets() {
+    std::vector<GpuPreset> presets;
+    for (const PresetText& preset : preset_texts()) {
+        const Gpu gpu = parse_gpu(preset.toml, preset.name + ".toml");
+        presets.push_back({gpu.name, gpu.description});
+    }
+    std::sort(presets.begin(), presets.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    return presets;
+}
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,97 @@
+// One SM: its resident CTAs and whose turn it is. Loose round-robin: after slot s the next unfinished resident warp in
+// slot order has its turn, slot 0 following the last.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cachesim/replay/hierarchy.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
+
+class Multiprocessor {
+public:
+    /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 first_l1 + s mod l1_per_sm.
+    Multiprocessor(unsigned cta_slots, unsigned warps_per_cta, std::uint16_t first_l1, unsigned l1_per_sm)
+        : warps_per_cta_(warps_per_cta), l1_per_sm_(l1_per_sm), first_l1_(first_l1), unfinished_(cta_slots) {}
+
+    bool idle() const { return active_.empty(); }
+
+    /// Makes the warps resident, all before their first record; those without an access end here.
+    void place(unsigned cta_slot, std::span<const WarpPointer> warps, Hierarchy& memory) {
+        auto at = active_.begin();
+        while (at != active_.end() && at->slot < cta_slot * warps_per_cta_) ++at;
+        auto place = static_cast<std::size_t>(at - active_.begin());
+        for (std::size_t i = 0; i < warps.size(); ++i) {
+            const traces::WarpTrace& trace = *warps[i];
+            Warp warp;
+            warp.slot = cta_slot * warps_per_cta_ + static_cast<unsigned>(i);
+            warp.l1 = static_cast<std::uint16_t>(first_l1_ + warp.slot % l1_per_sm_);
+            warp.next = trace.records.data();
+            warp.end = warp.next + trace.records.size();
+            warp.elements = trace.elements.data();
+            warp.trace = warps[i];
+            if (!advance_to_access(warp, memory)) continue;
+            if (place < turn_ || (place == turn_ && warp.slot < resume_slot_)) ++turn_;
+            active_.insert(active_.begin() + static_cast<std::ptrdiff_t>(place), std::move(warp));
+            ++place;
+            ++unfinished_[cta_slot];
+        }
+    }
+
+    /// One warp access of the warp whose turn it is; not for an idle SM. Returns the CTA slot that it freed, if any.
+    std::optional<unsigned> issue(Hierarchy& memory) {
+        if (turn_ >= active_.size()) turn_ = 0;
+        Warp& warp = active_[turn_];
+        const traces::Record record = *warp.next++;
+        memory.access(record, warp.elements, warp.l1);
+        warp.elements += record.lanes();
+        // This warp's next turn comes after all others': fetch what it will read then.
+        __builtin_prefetch(warp.elements + 16);
+        __builtin_prefetch(warp.elements + 32);
+        __builtin_prefetch(warp.next + 8);
+        resume_slot_ = warp.slot + 1;
+        if (advance_to_access(warp, memory)) {
+            ++turn_;
+            return std::nullopt;
+        }
+        const unsigned cta_slot = warp.slot / warps_per_cta_;
+        active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
+        if (--unfinished_[cta_slot] > 0) return std::nullopt;
+        return cta_slot;
+    }
+
+private:
+    struct Warp {
+        const traces::Record *next = nullptr, *end = nullptr;
+        const std::uint32_t* elements = nullptr;  ///< of `next`
+        unsigned slot = 0;
+        std::uint16_t l1 = 0;
+        WarpPointer trace;
+    };
+
+    /// Counts ray starts up to the next access; false if there is none.
+    static bool advance_to_access(Warp& warp, Hierarchy& memory) {
+        for (; warp.next != warp.end; ++warp.next) {
+            if (warp.next->is_access()) return true;
+            memory.add_rays(*warp.next);
+        }
+        return false;
+    }
+
+    unsigned warps_per_cta_, l1_per_sm_;
+    std::uint16_t first_l1_;
+    std::vector<Warp> active_;          ///< unfinished warps by slot
+    std::size_t turn_ = 0;              ///< place in active_ of the next to issue; its size means 0
+    unsigned resume_slot_ = 0;          ///< the next to issue has this slot or a later one, or the turn wraps
+    std::vector<unsigned> unfinished_;  ///< unfinished warps of each CTA slot
+};
+
+}  // namespace raycache::cachesim

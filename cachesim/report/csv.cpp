@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cachesim/report/report.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// One record of comma-separated values (RFC 4180, lines end in '\n'). A value that does not exist is an empty field.
+class Line {
+public:
+    void text(const std::string& value) {
+        if (value.find_first_of(",\"\r\n") == std::string::npos) return raw(value);
+        std::string quoted = "\"";
+        for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
+        raw(quoted + '"');
+    }
+    void number(std::uint64_t value) { raw(fmt::format("{}", value)); }
+    /// The shortest digits that read back as the same double.
+    void number(double value) { raw(std::isfinite(value) ? fmt::format("{}", value) : ""); }
+    void estimate(const std::optional<Estimate>& e) {
+        const double none = std::nan("");
+        number(e ? e->mean : none);
+        number(e && e->half_width ? *e->half_width : none);
+    }
+    std::string end() { return line_ + '\n'; }
+
+private:
+    void raw(const std::string& field) {
+        if (!first_) line_ += ',';
+        first_ = false;
+        line_ += field;
+    }
+    std::string line_;
+    bool first_ = true;
+};
+
+constexpr const char* header =
+    "scene,strategy,sequence,parameters,thread_map,gpu,group,spp,samples,total_rays,steps,lane_accesses,warp_accesses,"
+    "sectors,l1_hits,l2_sectors,l2_hits,dram_sectors,rays,rays_ci95,steps_per_ray,steps_per_ray_ci95,active_lanes,"
+    "active_lanes_ci95,sectors_per_access,sectors_per_access_ci95,l1_hit_rate,l1_hit_rate_ci95,l2_hit_rate,"
+    "l2_hit_rate_ci95,l2_bytes_per_ray,l2_bytes_per_ray_ci95,dram_bytes_per_ray,dram_bytes_per_ray_ci95,l2_bytes_ratio,"
+    "l2_bytes_ratio_ci95,dram_bytes_ratio,dram_bytes_ratio_ci95,work,simt_efficiency,coalescing,l1_locality,l2_"
+    "locality\n";
+
+}  // namespace
+
+std::string to_csv(const Report& report) {
+    std::string csv = header;
+    for (const Row& row : report.rows) {
+        Line line;
+        for (const auto* name :
+             {&row.scene, &row.strategy, &row.sequence, &row.parameters, &row.thread_map, &row.gpu, &row.group})
+            line.text(*name);
+        line.number(row.spp);
+        std::string samples;  // one field: "0 1 2"
+        for (const std::uint32_t sample : row.samples)
+            samples += fmt::format("{}{}", samples.empty() ? "" : " ", sample);
+        line.text(samples);
+        const Counters& c = row.totals;
+        for (const std::uint64_t count : {c.rays, c.steps, c.lane_accesses, c.warp_accesses, c.sectors, c.l1_hits,
+                                          c.l2_sectors, c.l2_hits, c.dram_sectors})
+            line.number(count);
+        for (const Estimate* e : {&row.rays, &row.steps_per_ray, &row.active_lanes, &row.sectors_per_access,
+                                  &row.l1_hit_rate, &row.l2_hit_rate, &row.l2_bytes_per_ray, &row.dram_bytes_per_ray})
+            line.estimate(*e);
+        line.estimate(row.l2_bytes_ratio);
+        line.estimate(row.dram_bytes_ratio);
+        const double none = std::nan("");
+        const Factors f = row.factors.value_or(Factors{none, none, none, none, none});
+        for (const double value : {f.work, f.simt_efficiency, f.coalescing, f.l1_locality, f.l2_locality})
+            line.number(value);
+        csv += line.end();
+    }
+    return csv;
+}
+
+}  // namespace raycache::cachesim

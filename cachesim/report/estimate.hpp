@@ -1,0 +1,32 @@
+// Ratio estimates with 95 % confidence intervals.
+//
+// y_i, x_i: sums of sample index i, i = 1 … n. R = sum y / sum x. Ratio estimator (Cochran, Sampling Techniques, 1977,
+// section 6.3), without finite population correction:
+//     var R = sum (y_i - R x_i)^2 / (n (n - 1) mean(x)^2)
+// A ratio Q = R / R' to a baseline that has the same sample indices, first-order expansion with paired residuals:
+//     e_i = (y_i - R x_i) / mean(y) - (y'_i - R' x'_i) / mean(y'),   var Q = Q^2 sum e_i^2 / (n (n - 1))
+// half width = t(0.975, n - 1) sqrt(var).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cachesim/report/report.hpp"
+
+namespace raycache::cachesim {
+
+/// Sums per sample index, in the same order.
+struct Sums {
+    std::vector<double> y, x;
+};
+
+/// sum y / sum x.
+Estimate ratio_of_totals(const Sums&);
+
+/// (sum y / sum x) of one over that of the baseline, index by index.
+Estimate ratio_to_baseline(const Sums&, const Sums& baseline);
+
+/// The 0.975 quantile of Student's t distribution; degrees of freedom >= 1.
+double student_t_975(std::size_t degrees_of_freedom);
+
+}  // namespace raycache::cachesim

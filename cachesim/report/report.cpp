@@ -1,0 +1,152 @@
+#include "cachesim/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "cachesim/report/estimate.hpp"
+#include "cachesim/report/groups.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+using Member = std::uint64_t Counters::*;
+
+/// A row with what its estimates are made of.
+struct Draft {
+    Row row;
+    std::vector<Counters> by_launch;
+    double sector_bytes = 32;
+
+    /// Per sample index; a null member counts 1.
+    Sums sums(Member y, Member x, double scale = 1) const {
+        Sums s;
+        for (const Counters& c : by_launch) {
+            s.y.push_back(scale * static_cast<double>(c.*y));
+            s.x.push_back(x ? static_cast<double>(c.*x) : 1.0);
+        }
+        return s;
+    }
+    Sums l2_bytes() const { return sums(&Counters::l2_sectors, &Counters::rays, sector_bytes); }
+    Sums dram_bytes() const { return sums(&Counters::dram_sectors, &Counters::rays, sector_bytes); }
+
+    auto key() const { return std::tie(row.scene, row.sequence, row.spp, row.thread_map, row.gpu, row.group); }
+};
+
+Draft make_draft(const Series& series, const LaunchGroup& group) {
+    Draft draft;
+    Row& row = draft.row;
+    row.scene = series.scene;
+    row.strategy = series.strategy;
+    row.sequence = series.sequence;
+    row.parameters = series.parameters;
+    row.thread_map = series.thread_map;
+    row.gpu = series.gpu;
+    row.group = group.name;
+    row.spp = series.spp;
+    for (const LaunchStatistics& launch : series.launches) row.samples.push_back(launch.sample);
+    draft.by_launch = group.by_launch;
+    draft.sector_bytes = series.sector_bytes;
+    for (const Counters& c : group.by_launch) row.totals += c;
+
+    row.rays = ratio_of_totals(draft.sums(&Counters::rays, nullptr));
+    row.steps_per_ray = ratio_of_totals(draft.sums(&Counters::steps, &Counters::rays));
+    row.active_lanes = ratio_of_totals(draft.sums(&Counters::lane_accesses, &Counters::warp_accesses));
+    row.sectors_per_access = ratio_of_totals(draft.sums(&Counters::sectors, &Counters::warp_accesses));
+    row.l1_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_hits, &Counters::sectors));
+    row.l2_hit_rate = ratio_of_totals(draft.sums(&Counters::l2_hits, &Counters::l2_sectors));
+    row.l2_bytes_per_ray = ratio_of_totals(draft.l2_bytes());
+    row.dram_bytes_per_ray = ratio_of_totals(draft.dram_bytes());
+    return draft;
+}
+
+/// (y/x of own totals) / (y/x of the baseline's).
+double factor(const Counters& own, const Counters& base, Member y, Member x) {
+    const auto ratio = [&](const Counters& c) { return static_cast<double>(c.*y) / static_cast<double>(c.*x); };
+    return ratio(own) / ratio(base);
+}
+
+/// None where a quotient has no value: nothing was read, or nothing missed.
+std::optional<Factors> factors(const Counters& own, const Counters& base) {
+    const Factors f{factor(own, base, &Counters::steps, &Counters::rays),
+                    factor(own, base, &Counters::warp_accesses, &Counters::steps),
+                    factor(own, base, &Counters::sectors, &Counters::warp_accesses),
+                    factor(own, base, &Counters::l2_sectors, &Counters::sectors),
+                    factor(own, base, &Counters::dram_sectors, &Counters::l2_sectors)};
+    return std::isfinite(f.product()) ? std::optional(f) : std::nullopt;
+}
+
+std::string name_of(const Row& row) {
+    return fmt::format("scene {}, sequence {}, N {}, thread map {}, GPU {}", row.scene, row.sequence, row.spp,
+                       row.thread_map, row.gpu);
+}
+
+/// Notes in order of first mention, each once.
+class Notes {
+public:
+    explicit Notes(std::vector<std::string>& notes) : notes_(notes) {}
+    void add(const std::string& note) {
+        if (seen_.insert(note).second) notes_.push_back(note);
+    }
+
+private:
+    std::vector<std::string>& notes_;
+    std::set<std::string> seen_;
+};
+
+void compare(Draft& draft, const std::vector<Draft>& drafts, const std::string& baseline, Notes& notes) {
+    Row& row = draft.row;
+    const auto base = std::find_if(drafts.begin(), drafts.end(), [&](const Draft& d) {
+        return d.row.strategy == baseline && d.key() == draft.key();
+    });
+    if (base == drafts.end()) {
+        notes.add(fmt::format("no ratio to the baseline {0} for {1}: the baseline has no such row{2}", baseline,
+                              name_of(row), row.group == "all" ? "" : " in group " + row.group));
+        return;
+    }
+    if (base->row.samples != row.samples) {
+        notes.add(
+            fmt::format("no ratio to the baseline {} for strategy {}, {}: their sample indices differ, so they "
+                        "cannot be paired",
+                        baseline, row.strategy, name_of(row)));
+        return;
+    }
+    row.l2_bytes_ratio = ratio_to_baseline(draft.l2_bytes(), base->l2_bytes());
+    row.dram_bytes_ratio = ratio_to_baseline(draft.dram_bytes(), base->dram_bytes());
+    row.factors = factors(row.totals, base->row.totals);
+}
+
+}  // namespace
+
+Report make_report(const std::vector<Series>& all_series, const std::string& baseline, GroupBy by) {
+    Report report;
+    report.baseline = baseline;
+    report.by = by;
+    if (!baseline.empty() &&
+        std::none_of(all_series.begin(), all_series.end(), [&](const Series& s) { return s.strategy == baseline; })) {
+        std::set<std::string> names;
+        for (const Series& s : all_series) names.insert(s.strategy);
+        std::string list;
+        for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+        throw UsageError(fmt::format("baseline: expected one of the strategies {}, found \"{}\"", list, baseline));
+    }
+
+    std::vector<Draft> drafts;
+    for (const Series& series : all_series)
+        for (const LaunchGroup& group : split(series.launches, by)) drafts.push_back(make_draft(series, group));
+
+    Notes notes(report.notes);
+    for (Draft& draft : drafts) {
+        if (!baseline.empty() && draft.row.strategy != baseline) compare(draft, drafts, baseline, notes);
+        if (draft.row.samples.size() == 1) notes.add("one sample index: no confidence interval");
+        report.rows.push_back(draft.row);
+    }
+    return report;
+}
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""Mistakes on the command line: exit code 2, one line that says what is wrong and what would be right."""
+from support import GPU, LAUNCHES, SCENE, ProgramTest, main
+
+CAPTURE = ["capture", *SCENE, *LAUNCHES, "-o", "trace.rct"]
+RENDER = ["render", *SCENE, "--spp", "1", "--resolution", "16x16", "-o", "picture.png"]
+COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU]
+
+
+class BadCommandLines(ProgramTest):
+    def names(self, topic):
+        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json[topic]]
+
+    def test_no_subcommand_an_unknown_one_and_an_unknown_option(self):
+        self.refuses(2)
+        self.refuses(2, "trace")
+        self.refuses(2, "list", "--colour")
+        self.refuses(2, *CAPTURE, "--bounce", "1")
+
+    def test_a_missing_argument_is_named(self):
+        self.refuses(2, "render", "courtyard", mentions=["--output"])
+        self.refuses(2, "capture", "-o", "trace.rct", mentions=["SCENE"])
+        self.refuses(2, "info", mentions=["TRACE"])
+        self.refuses(2, "replay", "trace.rct", mentions=["--gpu"])
+        self.refuses(2, "compare", "--scene", "courtyard", mentions=["--gpu"])
+
+    def test_resolutions_that_are_zero_huge_or_no_resolution(self):
+        for text in ("0x0", "0x48", "64x0", "100000x100000", "99999999999999999999x1", "64", "64x", "x48", "64x48x2",
+                     "-64x48", "64x-48", "64.5x48", "64 x 48", "axb", ""):
+            with self.subTest(text):
+                self.refuses(2, *CAPTURE, "--resolution", text, mentions=["WIDTHxHEIGHT"])
+                self.refuses(2, *RENDER, "--resolution", text)
+                self.refuses(2, *COMPARE, "--resolution", text)
+
+    def test_sample_counts_that_are_zero_negative_or_no_number(self):
+        for text in ("0", "-1", "1.5", "many", "99999999999999999999999", "nan", ""):
+            with self.subTest(text):
+                self.refuses(2, *CAPTURE, "--spp", text)
+                self.refuses(2, *RENDER, "--spp", text)
+                self.refuses(2, *COMPARE, "--spp", "16," + text)
+                self.refuses(2, *CAPTURE, "--trace-samples", text)
+        self.refuses(2, *CAPTURE, "--spp", "4294967297")
+
+    def test_other_numbers_that_are_out_of_range(self):
+        for option, values in (("--bounces", ("-1", "65", "x")), ("--threads", ("0", "-2", "two", "100000")),
+                               ("--k", ("-1", "nan", "inf", "k")), ("--s", ("0", "-1", "x")),
+                               ("--mu", ("-0.5", "nan", "inf", "-nan", "half", "0.5x")),
+                               ("--seed", ("-1", "x")), ("--fov", ("-1", "180", "nan", "wide")),
+                               ("--detail", ("1", "-5", "99999999999", "fine"))):
+            for value in values:
+                with self.subTest(f"{option} {value}"):
+                    self.refuses(2, *CAPTURE, option, value)
+        for value in ("-1", "x", "100000000"):
+            with self.subTest(f"--warps-per-sm {value}"):
+                self.refuses(2, *COMPARE, "--warps-per-sm", value)
+
+    def test_an_unknown_name_is_answered_with_the_valid_ones(self):
+        for topic, option in (("strategies", "--strategy"), ("sequences", "--sequence"), ("thread-maps", "--thread-map")):
+            for command in (CAPTURE, COMPARE):
+                with self.subTest(f"{command[0]} {option}"):
+                    self.refuses(2, *command, option, "nonsense", mentions=["nonsense", *self.names(topic)])
+        self.refuses(2, *COMPARE, "--gpu", "gtx-9999", mentions=["gtx-9999", *self.names("gpus")])
+        self.refuses(2, "capture", "atrium", "-o", "trace.rct", mentions=["atrium", *self.names("scenes")])
+        self.refuses(2, "list", "colours", mentions=["colours", "strategies", "sequences", "gpus", "scenes"])
+        self.refuses(2, *COMPARE, "--by", "colour", mentions=["colour", "none", "bounce", "ray", "object"])
+        self.refuses(2, *COMPARE, "--baseline", "random", mentions=["random", "coherent", "cranley-patterson"])
+        self.refuses(2, *CAPTURE, "--sky", "blue", mentions=["blue", "auto", "on", "off"])
+
+    def test_an_unknown_camera_is_answered_with_the_cameras_of_the_scene(self):
+        for camera in ("nonsense", "99", "-1"):
+            with self.subTest(camera):
+                self.assertIn(camera, self.refuses(2, *CAPTURE, "--camera", camera))
+
+    def test_views_that_make_no_sense(self):
+        self.refuses(2, *CAPTURE, "--eye", "1,2,3")
+        self.refuses(2, *CAPTURE, "--look-at", "1,2,3")
+        self.refuses(2, *CAPTURE, "--eye", "1,2,3", "--look-at", "1,2,3")
+        for text in ("1,2", "1,2,3,4", "1;2;3", "a,b,c", "1,2,nan", "inf,2,3", ""):
+            with self.subTest(text):
+                self.refuses(2, *CAPTURE, "--eye", text, "--look-at", "0,0,0")
+
+    def test_conflicting_or_missing_inputs_of_compare(self):
+        self.refuses(2, "compare", *GPU, mentions=["--scene"])
+        trace = self.capture()
+        self.refuses(2, *COMPARE, trace)
+        self.refuses(2, *COMPARE, "--json", "--csv", mentions=["--json", "--csv"])
+        self.refuses(2, "replay", trace, *GPU, "--json", "--csv", mentions=["--json", "--csv"])
+
+    def test_a_picture_name_without_a_known_ending_is_refused_before_the_work(self):
+        for name in ("picture", "picture.gif", "picture.png.txt", ".png.", ""):
+            with self.subTest(name):
+                self.refuses(2, "render", "courtyard", "--resolution", "4096x4096", "--spp", "4096", "-o", name,
+                             timeout=30)
+
+    def test_a_name_with_control_characters_does_not_reach_the_terminal(self):
+        line = self.refuses(2, "capture", "evil\x1b[31m\nname", "-o", "trace.rct")
+        self.assertNotIn("\x1b", line)
+
+
+if __name__ == "__main__":
+    main()

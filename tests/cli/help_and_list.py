@@ -1,0 +1,74 @@
+#!/usr/bin/python3
+"""raycache --help, --version and list."""
+import re
+
+from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
+
+SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "list"]
+TOPICS = ["strategies", "sequences", "gpus", "layouts", "thread-maps", "scenes"]
+
+
+class HelpAndList(ProgramTest):
+    def test_the_help_of_the_program_names_every_subcommand_and_shows_an_example(self):
+        text = self.succeeds("--help").text
+        for name in SUBCOMMANDS:
+            self.assertRegex(text, rf"(?m)^ +{name} ")
+        self.assertIn("raycache compare ", text)
+
+    def test_the_help_of_every_subcommand_shows_examples_of_that_subcommand(self):
+        for name in SUBCOMMANDS:
+            with self.subTest(name):
+                text = self.succeeds(name, "--help").text
+                self.assertRegex(text, rf"(?s)Examples:.*\n +raycache {name}\b")
+
+    def test_every_option_of_every_subcommand_has_a_description(self):
+        for name in SUBCOMMANDS:
+            lines = self.succeeds(name, "--help").text.splitlines()
+            for line, following in zip(lines, lines[1:] + [""]):
+                if re.match(r"^  -{1,2}[a-z]", line):
+                    words = line.split("  ")
+                    described = len([w for w in words if w.strip()]) > 1 or following.startswith(" " * 20)
+                    self.assertTrue(described, f"{name}: {line!r}")
+
+    def test_the_version_is_one_line_with_the_name_of_the_program(self):
+        self.assertRegex(self.succeeds("--version").text, r"\Araycache \d+\.\d+\.\d+\n\Z")
+
+    def test_list_without_a_topic_shows_all_topics(self):
+        text = self.succeeds("list").text
+        for topic in TOPICS:
+            self.assertRegex(text, rf"(?m)^{topic}$")
+
+    def test_list_gives_each_name_a_description_in_text_and_in_json(self):
+        listed = self.succeeds("list", "--json").json
+        self.assertEqual(list(listed), TOPICS)
+        text = self.succeeds("list").text
+        for topic, entries in listed.items():
+            self.assertGreater(len(entries), 0, topic)
+            for entry in entries:
+                self.assertRegex(entry["name"], r"\A[a-z0-9-]+\Z")
+                self.assertGreater(len(entry["description"]), 10, entry)
+                self.assertIn(f"  {entry['name']}", text)
+            self.assertEqual(self.succeeds("list", topic, "--json").json, {topic: entries})
+
+    def test_every_listed_strategy_sequence_gpu_and_thread_map_works(self):
+        listed = {topic: ",".join(entry["name"] for entry in entries)
+                  for topic, entries in self.succeeds("list", "--json").json.items()}
+        for options in (["--strategy", listed["strategies"], "--gpu", listed["gpus"]],
+                        ["--strategy", "micro-jitter", "--sequence", listed["sequences"], *GPU]):
+            report = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, *options, "--json").json
+            for key, option in (("strategy", "--strategy"), ("sequence", "--sequence"), ("gpu", "--gpu")):
+                if option in options:
+                    wanted = set(options[options.index(option) + 1].split(","))
+                    self.assertEqual({row[key] for row in report["rows"]}, wanted)
+        for name in listed["thread-maps"].split(","):
+            report = self.succeeds("compare", "--scene", *SCENE, *PICTURE, "--trace-samples", "32", "--bounces", "0",
+                                   "--thread-map", name, "--strategy", "coherent", *GPU, "--json").json
+            self.assertEqual({row["thread_map"] for row in report["rows"]}, {name})
+
+    def test_every_listed_scene_renders(self):
+        for entry in self.succeeds("list", "scenes", "--json").json["scenes"]:
+            self.succeeds("render", entry["name"], "--resolution", "16x16", "--spp", "1", "-o", entry["name"] + ".png")
+
+
+if __name__ == "__main__":
+    main()

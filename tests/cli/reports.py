@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""What compare and replay print: groups, baseline, formats, saved files, and where warnings go."""
+import csv
+import io
+import os
+import pty
+import subprocess
+
+from support import GPU, LAUNCHES, RAYCACHE, SCENE, ProgramTest, main
+
+COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU]
+
+
+class Reports(ProgramTest):
+    def test_the_groups_of_each_cut_add_up_to_the_whole(self):
+        whole = {row["strategy"]: row["totals"] for row in self.succeeds(*COMPARE, "--json").json["rows"]}
+        for by, expected in (("bounce", 3), ("ray", 3), ("object", 2)):
+            with self.subTest(by):
+                report = self.succeeds(*COMPARE, "--by", by, "--json").json
+                self.assertEqual(report["by"], by)
+                for strategy, totals in whole.items():
+                    rows = [row for row in report["rows"] if row["strategy"] == strategy]
+                    self.assertGreaterEqual(len({row["group"] for row in rows}), expected)
+                    for key in ("steps", "lane_accesses", "sectors", "l1_hits", "l2_sectors", "dram_sectors"):
+                        self.assertEqual(sum(row["totals"][key] for row in rows), totals[key], key)
+                    if by != "object":
+                        self.assertEqual(sum(row["totals"]["rays"] for row in rows), totals["rays"])
+
+    def test_cranley_patterson_is_the_baseline_where_it_is_compared(self):
+        report = self.succeeds(*COMPARE, "--json").json
+        self.assertEqual(report["baseline"], "cranley-patterson")
+        for row in report["rows"]:
+            self.assertEqual(row["dram_bytes_ratio"] is None, row["strategy"] == "cranley-patterson")
+
+    def test_another_baseline_can_be_chosen_and_the_factors_multiply_to_the_ratio(self):
+        report = self.succeeds(*COMPARE, "--baseline", "coherent", "--json").json
+        self.assertEqual(report["baseline"], "coherent")
+        compared = [row for row in report["rows"] if row["strategy"] != "coherent"]
+        self.assertEqual(len(compared), 2)
+        for row in compared:
+            product = 1
+            for factor in row["factors"].values():
+                product *= factor
+            self.assertAlmostEqual(product / row["dram_bytes_ratio"]["mean"], 1, delta=1e-9)
+            self.assertGreater(row["dram_bytes_ratio"]["half_width_95"], 0)
+
+    def test_without_cranley_patterson_there_is_a_table_without_ratios(self):
+        report = self.succeeds(*COMPARE, "--strategy", "coherent,micro-jitter", "--json").json
+        self.assertEqual([row["dram_bytes_ratio"] for row in report["rows"]], [None, None])
+        self.assertNotIn("DRAM ratio", self.succeeds(*COMPARE, "--strategy", "coherent,micro-jitter").text)
+
+    def test_csv_and_json_hold_the_same_numbers(self):
+        rows = self.succeeds(*COMPARE, "--spp", "16,64", "--json").json["rows"]
+        lines = list(csv.DictReader(io.StringIO(self.succeeds(*COMPARE, "--spp", "16,64", "--csv").text)))
+        self.assertEqual(len(lines), 6)
+        for row, line in zip(rows, lines, strict=True):
+            self.assertEqual((row["strategy"], str(row["spp"]), row["gpu"]), (line["strategy"], line["spp"], line["gpu"]))
+            self.assertEqual(row["totals"]["dram_sectors"], int(line["dram_sectors"]))
+            self.assertEqual(row["l1_hit_rate"]["mean"], float(line["l1_hit_rate"]))
+
+    def test_the_lines_of_the_table_are_as_wide_as_each_other_and_name_each_strategy(self):
+        text = self.succeeds(*COMPARE).text
+        for name in ("coherent", "cranley-patterson", "micro-jitter"):
+            self.assertRegex(text, rf"(?m)^{name} .* gtx-980-ti ")
+        self.assertNotIn("nan", text)
+
+    def test_save_writes_three_files_and_still_prints_the_table(self):
+        printed = self.succeeds(*COMPARE, "--save", "study").text
+        self.assertEqual(self.listing(), ["study.csv", "study.json", "study.txt"])
+        self.assertEqual(self.path("study.txt").read_text("utf-8"), printed)
+        self.assertEqual(self.path("study.json").read_bytes(), self.succeeds(*COMPARE, "--json").stdout)
+        self.assertEqual(self.path("study.csv").read_bytes(), self.succeeds(*COMPARE, "--csv").stdout)
+
+    def test_the_ratios_are_no_different_with_a_gpu_beside(self):
+        alone = self.succeeds(*COMPARE, "--json").json["rows"]
+        both = self.succeeds(*COMPARE, "--gpu", "h100", "--json").json["rows"]
+        self.assertEqual([row for row in both if row["gpu"] == "gtx-980-ti"], alone)
+
+    def test_fewer_resident_warps_change_the_traffic_and_nothing_else(self):
+        row, = self.succeeds(*COMPARE, "--strategy", "random", "--json").json["rows"]
+        few, = self.succeeds(*COMPARE, "--strategy", "random", "--warps-per-sm", "1", "--json").json["rows"]
+        self.assertEqual(few["totals"]["sectors"], row["totals"]["sectors"])
+        self.assertNotEqual(few["totals"]["l1_hits"], row["totals"]["l1_hits"])
+
+    def test_one_sample_index_has_no_interval_and_says_so(self):
+        report = self.succeeds(*COMPARE, "--trace-samples", "1", "--json").json
+        self.assertIsNone(report["rows"][0]["dram_bytes_per_ray"]["half_width_95"])
+        self.assertTrue(any("one sample index" in note for note in report["notes"]))
+
+    def test_mu_above_one_is_clamped_with_a_warning_on_stderr_only(self):
+        plain = self.succeeds(*COMPARE, "--strategy", "micro-jitter", "--mu", "1")
+        clamped = self.warns(*COMPARE, "--strategy", "micro-jitter", "--mu", "1.5")
+        self.assertEqual(len(clamped.stderr.splitlines()), 1)
+        self.assertIn("1.5", clamped.stderr)
+        self.assertEqual(clamped.stdout, plain.stdout)
+
+    def test_mu_of_zero_is_the_coherent_strategy_and_cycles_is_a_mu(self):
+        zero, = self.succeeds(*COMPARE, "--strategy", "micro-jitter", "--mu", "0", "--json").json["rows"]
+        coherent, = self.succeeds(*COMPARE, "--strategy", "coherent", "--json").json["rows"]
+        self.assertEqual(zero["totals"], coherent["totals"])
+        self.succeeds(*COMPARE, "--strategy", "micro-jitter", "--mu", "cycles")
+
+    def test_progress_is_shown_on_a_terminal_only_and_wiped_at_the_end(self):
+        ours, theirs = pty.openpty()
+        command = [RAYCACHE, "compare", "--scene", *SCENE, *GPU, "--resolution", "256x256", "--trace-samples", "4"]
+        process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        while True:
+            try:
+                chunk = os.read(ours, 65536)
+            except OSError:  # Linux: the other end is closed
+                break
+            if not chunk:
+                break
+            shown += chunk
+        table = process.communicate()[0]
+        os.close(ours)
+        self.assertEqual(process.returncode, 0)
+        self.assertIn(b"rays/s", shown)
+        self.assertTrue(shown.endswith(b"\r\x1b[K"), shown[-200:])
+        self.assertNotIn(b"rays/s", table)
+        self.assertEqual(self.succeeds(*command[1:]).stdout, table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,100 @@
+"""What the tests of the command line share: running raycache in an empty folder, and what every refusal must look like."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+RAYCACHE = os.environ.get("RAYCACHE", str(ROOT / "build/release/raycache"))
+
+# Small enough for a sanitizer build.
+SCENE = ["courtyard", "--detail", "50000"]
+PICTURE = ["--resolution", "64x48"]
+LAUNCHES = PICTURE + ["--trace-samples", "2"]
+GPU = ["--gpu", "gtx-980-ti"]
+
+
+class Result:
+    def __init__(self, done):
+        self.code = done.returncode
+        self.stdout = done.stdout
+        self.stderr = done.stderr.decode("utf-8", "replace")
+
+    @property
+    def text(self):
+        return self.stdout.decode("utf-8")
+
+    @property
+    def json(self):
+        return json.loads(self.stdout)
+
+    def __repr__(self):
+        return f"exit code {self.code}\n--- stdout\n{self.stdout[:2000]!r}\n--- stderr\n{self.stderr[:4000]}"
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test has a folder of its own, which is also the current directory of the program."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="raycache test ")  # a space, as in "My Documents"
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def path(self, name):
+        return self.folder / name
+
+    def run_program(self, *arguments, timeout=300, **keywords):
+        command = [RAYCACHE, *map(str, arguments)]
+        keywords.setdefault("stdout", subprocess.PIPE)
+        keywords.setdefault("cwd", self.folder)
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=timeout, check=False,
+                              **keywords)
+        if done.stdout is None:
+            done.stdout = b""
+        return Result(done)
+
+    def succeeds(self, *arguments, **keywords):
+        """Runs; exit code 0 and not a word on stderr. Returns the result."""
+        result = self.warns(*arguments, **keywords)
+        self.assertEqual(result.stderr, "", f"unexpected words on stderr: {arguments}")
+        return result
+
+    def warns(self, *arguments, **keywords):
+        """Runs; exit code 0 and nothing but warnings on stderr. Returns the result."""
+        result = self.run_program(*arguments, **keywords)
+        self.assertEqual(result.code, 0, f"{arguments}: {result}")
+        for line in result.stderr.splitlines():
+            self.assertTrue(line.startswith("raycache: warning: "), f"{arguments}: {result}")
+        return result
+
+    def refuses(self, code, *arguments, mentions=(), warnings=False, **keywords):
+        """Runs; the exit code, one line on stderr, nothing on stdout, and no file came or went. Returns the line."""
+        before = self.listing()
+        result = self.run_program(*arguments, **keywords)
+        what = f"{' '.join(map(str, arguments))}: {result}"
+        self.assertEqual(result.code, code, what)
+        lines = result.stderr.splitlines()
+        if warnings:
+            lines = [line for line in lines if not line.startswith("raycache: warning: ")]
+        self.assertEqual(len(lines), 1, what)
+        self.assertTrue(lines[0].startswith("raycache: error: "), what)
+        self.assertTrue(result.stderr.endswith("\n"), what)
+        self.assertGreater(len(lines[0]), len("raycache: error: ") + 10, what)
+        self.assertEqual(result.stdout, b"", what)
+        self.assertEqual(self.listing(), before, what)
+        for word in mentions:
+            self.assertIn(str(word), lines[0])
+        return lines[0]
+
+    def listing(self):
+        return sorted(str(p.relative_to(self.folder)) for p in self.folder.rglob("*"))
+
+    def capture(self, name="trace.rct", *arguments):
+        self.succeeds("capture", *SCENE, *LAUNCHES, "--spp", "64", *arguments, "-o", name)
+        return self.path(name)
+
+
+def main():
+    unittest.main(verbosity=2)

@@ -1,0 +1,85 @@
+// Rays for tests, and the answers of the warp traversal to a list of them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "test_meshes.hpp"
+#include "tracer/prepared_scene.hpp"
+#include "tracer/simt/recorder.hpp"
+#include "tracer/simt/warp_traversal.hpp"
+
+namespace raycache::tracer::test {
+
+/// Calls body(mask, rays of the warp, index of lane 0) for one warp after another.
+template <class Body>
+void for_each_warp(std::span<const Ray> rays, Body body) {
+    for (std::size_t first = 0; first < rays.size(); first += traces::warp_lanes) {
+        const auto count = static_cast<unsigned>(std::min<std::size_t>(traces::warp_lanes, rays.size() - first));
+        const std::uint32_t mask = count == 32 ? ~0U : (1U << count) - 1;
+        body(mask, &rays[first], first);
+    }
+}
+
+inline std::vector<Hit> closest_hits(const PreparedScene& scene, std::span<const Ray> rays) {
+    NullRecorder recorder;
+    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    std::vector<Hit> hits(rays.size() + traces::warp_lanes);
+    for_each_warp(rays, [&](std::uint32_t mask, const Ray* warp, std::size_t first) {
+        traversal.closest(mask, traces::RayType::camera, 0, warp, &hits[first]);
+    });
+    hits.resize(rays.size());
+    return hits;
+}
+
+inline std::vector<bool> any_hits(const PreparedScene& scene, std::span<const Ray> rays) {
+    NullRecorder recorder;
+    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    std::vector<bool> hits(rays.size());
+    for_each_warp(rays, [&](std::uint32_t mask, const Ray* warp, std::size_t first) {
+        const std::uint32_t occluded = traversal.occluded(mask, traces::RayType::shadow, 0, warp);
+        for (unsigned lane = 0; lane < 32 && first + lane < rays.size(); ++lane)
+            hits[first + lane] = ((occluded >> lane) & 1U) != 0;
+    });
+    return hits;
+}
+
+inline Ray ray_to(Vec3 from, Vec3 to) {
+    Ray ray;
+    ray.origin = from;
+    ray.direction = to - from;
+    return ray;
+}
+
+/// Rays from random points of the box in random directions.
+inline std::vector<Ray> random_rays(const Box& box, std::size_t count, std::uint32_t seed) {
+    Random random(seed);
+    std::vector<Ray> rays(count);
+    for (Ray& ray : rays) {
+        ray.origin = random.in(box);
+        ray.direction = random.direction();
+    }
+    return rays;
+}
+
+inline Vec3 corner(const Scene& scene, std::uint32_t triangle, std::uint32_t corner) {
+    return scene.positions[scene.indices[3 * std::size_t{triangle} + corner]];
+}
+
+/// Rays from random points of the box at vertices and at points of edges of random triangles; directions not normalised.
+inline std::vector<Ray> aimed_rays(const Scene& scene, const Box& box, std::size_t count, std::uint32_t seed) {
+    Random random(seed);
+    std::vector<Ray> rays;
+    while (rays.size() < count) {
+        const std::uint32_t t = random.below(static_cast<std::uint32_t>(scene.triangle_count()));
+        const std::uint32_t c = random.below(3);
+        const Vec3 a = corner(scene, t, c), b = corner(scene, t, (c + 1) % 3);
+        const Ray ray = ray_to(random.in(box), rays.size() % 2 == 0 ? a : a + (b - a) * random.unit());
+        if (length(ray.direction) > 0) rays.push_back(ray);
+    }
+    return rays;
+}
+
+}  // namespace raycache::tracer::test

@@ -1,0 +1,74 @@
+// raycache compare: strategies side by side, from trace files or straight from a scene.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "tools/options.hpp"
+#include "tools/replay_job.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::vector<std::string> traces;
+    SceneOptions scene;
+    std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter"};
+    std::vector<std::string> sequences{"sobol"};
+    std::vector<std::uint64_t> spp{64};
+    SamplingOptions sampling;
+    ReportOptions report;
+    ThreadOptions threads;
+};
+
+std::vector<cachesim::Series> compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
+    std::vector<tracer::CaptureSettings> settings;
+    std::set<std::string> warnings;
+    for (const std::string& sequence : o.sequences)
+        for (const std::uint64_t spp : o.spp)
+            for (const std::string& strategy : o.strategies) {
+                settings.push_back(o.sampling.capture(o.scene, sequence, strategy, spp));
+                warnings.insert(tracer::make_decorrelation(strategy, settings.back().strategy.parameters)->warning());
+            }
+    for (const std::string& w : warnings)
+        if (!w.empty()) warn(w);
+    const auto scene = o.scene.prepare();
+    std::vector<std::unique_ptr<tracer::Capture>> captures;
+    for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
+    return replay_captures(captures, gpus);
+}
+
+void run(const Options& o) {
+    if (o.traces.empty() == o.scene.source.empty())
+        throw UsageError("nothing to compare; expected either trace files or --scene, not both");
+    const auto gpus = o.report.load_gpus();
+    const auto limit = o.threads.apply();
+    o.report.publish(o.traces.empty() ? compare_fused(o, gpus) : replay_files(o.traces, gpus));
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("compare", "Compare strategies, from trace files or (fused, no files) from a scene");
+    command->add_option("TRACES", o->traces, "trace files");
+    o->scene.add(*command, false);
+    command->add_option("--strategy", o->strategies, "decorrelations, separated by commas")->delimiter(',')->capture_default_str();
+    command->add_option("--sequence", o->sequences, "sequences, separated by commas")->delimiter(',')->capture_default_str();
+    command->add_option("--spp", o->spp, "sizes N of the sample set, separated by commas")->delimiter(',')->capture_default_str();
+    o->sampling.add_launches(*command);
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    o->report.add(*command, true);
+    o->threads.add(*command);
+    command->footer(
+        "Examples:\n"
+        "  raycache compare cp.rct mj.rct coherent.rct --gpu gtx-980-ti --gpu h100\n"
+        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 --gpu gtx-980-ti\n"
+        "  raycache compare --scene sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,83 @@
+// raycache list: every name that another subcommand takes.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+#include "tracer/sampling/decorrelation.hpp"
+#include "tracer/sampling/sequence.hpp"
+#include "tracer/scene/scene.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Entry {
+    std::string name, description;
+};
+struct Topic {
+    std::string name;
+    std::vector<Entry> entries;
+};
+
+template <class List>
+std::vector<Entry> entries_of(const List& list) {
+    std::vector<Entry> entries;
+    for (const auto& item : list) entries.push_back({item.name, item.description});
+    return entries;
+}
+
+std::vector<Topic> all_topics() {
+    return {{"strategies", entries_of(tracer::decorrelations())},
+            {"sequences", entries_of(tracer::sequences())},
+            {"gpus", entries_of(cachesim::gpu_presets())},
+            {"layouts", {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
+            {"thread-maps",
+             {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
+              {"samples", "a warp = one pixel, 32 consecutive sample indices"}}},
+            {"scenes", entries_of(tracer::builtin_scenes())}};
+}
+
+struct Options {
+    std::string topic;
+    bool json = false;
+};
+
+void run(const Options& o) {
+    std::vector<Topic> topics = all_topics();
+    if (!o.topic.empty()) {
+        std::string valid;
+        for (const Topic& t : topics) valid += (valid.empty() ? "" : ", ") + t.name;
+        std::erase_if(topics, [&](const Topic& t) { return t.name != o.topic; });
+        if (topics.empty()) throw UsageError(fmt::format("unknown topic '{}'; expected one of: {}", o.topic, valid));
+    }
+    nlohmann::ordered_json json;
+    std::string text;
+    for (const Topic& topic : topics) {
+        std::size_t width = 0;
+        for (const Entry& e : topic.entries) width = std::max(width, e.name.size());
+        text += (text.empty() ? "" : "\n") + topic.name + "\n";
+        for (const Entry& e : topic.entries) {
+            text += fmt::format("  {:<{}}  {}\n", e.name, width, e.description);
+            json[topic.name].push_back({{"name", e.name}, {"description", e.description}});
+        }
+    }
+    print(o.json ? json.dump(2) + "\n" : text);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("list", "List strategies, sequences, GPUs, layouts, thread maps, built-in scenes");
+    command->add_option("TOPIC", o->topic, "strategies, sequences, gpus, layouts, thread-maps or scenes; default: all");
+    command->add_flag("--json", o->json, "print JSON");
+    command->footer("Examples:\n  raycache list\n  raycache list gpus --json");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

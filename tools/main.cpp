@@ -1,0 +1,41 @@
+// raycache: parse, run, report. One subcommand per file.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+
+int main(int argc, char** argv) {
+    using namespace raycache;
+    CLI::App app{"Explains why one sampling strategy makes GPU ray tracing faster than another, without a GPU.", "raycache"};
+    app.set_version_flag("--version", tools::program_name());
+    app.require_subcommand(1);
+    app.footer(
+        "Examples:\n"
+        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 64 --gpu gtx-980-ti\n"
+        "  raycache render courtyard --spp 16 -o courtyard.png\n"
+        "  raycache compare --help");
+    tools::add_render(app);
+    tools::add_capture(app);
+    tools::add_info(app);
+    tools::add_verify(app);
+    tools::add_replay(app);
+    tools::add_compare(app);
+    tools::add_list(app);
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+        return tools::fail(e.what(), 2);
+    } catch (const UsageError& e) {
+        return tools::fail(e.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return tools::fail("out of memory; try a smaller scene, resolution or --detail", 1);
+    } catch (const std::exception& e) {
+        return tools::fail(e.what(), 1);
+    }
+}

@@ -1,0 +1,220 @@
+#include "tools/options.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <charconv>
+#include <cmath>
+#include <thread>
+
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+
+namespace raycache::tools {
+namespace {
+
+tracer::Vec3 parse_vector(const std::string& text, const char* option) {
+    tracer::Vec3 v;
+    float* out[3] = {&v.x, &v.y, &v.z};
+    const char* at = text.data();
+    const char* end = at + text.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto [stop, error] = std::from_chars(at, end, *out[i]);
+        const bool last = i == 2;
+        if (error != std::errc{} || !std::isfinite(*out[i]) || (last ? stop != end : stop == end || *stop != ','))
+            throw UsageError(fmt::format("{} '{}'; expected three numbers X,Y,Z such as 1.5,2,-3", option, text));
+        at = stop + 1;
+    }
+    return v;
+}
+
+tracer::SceneRequest::Sky parse_sky(const std::string& text) {
+    if (text == "auto") return tracer::SceneRequest::Sky::automatic;
+    if (text == "on") return tracer::SceneRequest::Sky::on;
+    if (text == "off") return tracer::SceneRequest::Sky::off;
+    throw UsageError(fmt::format("--sky '{}'; expected one of: auto, on, off", text));
+}
+
+cachesim::GroupBy parse_by(const std::string& text) {
+    if (text == "none") return cachesim::GroupBy::none;
+    if (text == "bounce") return cachesim::GroupBy::bounce;
+    if (text == "ray") return cachesim::GroupBy::ray;
+    if (text == "object") return cachesim::GroupBy::object;
+    throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
+}
+
+void save_text(const std::string& path, const std::string& text) {
+    traces::OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+}  // namespace
+
+Resolution parse_resolution(const std::string& text) {
+    Resolution r{};
+    const char* end = text.data() + text.size();
+    const auto [cross, error] = std::from_chars(text.data(), end, r.width);
+    const bool separated = error == std::errc{} && cross != end && *cross == 'x';
+    const auto [stop, second_error] =
+        separated ? std::from_chars(cross + 1, end, r.height) : std::from_chars_result{cross, std::errc::invalid_argument};
+    if (second_error != std::errc{} || stop != end || r.width == 0 || r.height == 0 || r.width > tracer::max_resolution ||
+        r.height > tracer::max_resolution)
+        throw UsageError(fmt::format("--resolution '{}'; expected WIDTHxHEIGHT such as 512x512, each 1 to {}", text,
+                                     tracer::max_resolution));
+    return r;
+}
+
+void SceneOptions::add(CLI::App& app, bool positional) {
+    const char* help = "a .glb or .gltf file, or a built-in scene (see 'raycache list scenes')";
+    if (positional)
+        app.add_option("SCENE", source, help)->required();
+    else
+        app.add_option("--scene", source, help);
+    app.add_option("--detail", detail, "triangles wanted of a built-in scene");
+    app.add_option("--camera", camera, "camera of the scene by NAME or INDEX; default: the first");
+    app.add_option("--eye", eye, "X,Y,Z of the eye instead of a camera of the file; needs --look-at");
+    app.add_option("--look-at", look_at, "X,Y,Z that the eye looks at");
+    app.add_option("--fov", fov, "vertical field of view in degrees; default: the camera's");
+    app.add_option("--sky", sky, "constant sky and a sun: auto (where the scene has no light of its own), on, off")
+        ->capture_default_str();
+    app.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
+}
+
+std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare() const {
+    tracer::SceneRequest request;
+    request.source = source;
+    request.detail = detail;
+    request.sky = parse_sky(sky);
+    request.camera = camera;
+    if (!eye.empty()) request.eye = parse_vector(eye, "--eye");
+    if (!look_at.empty()) request.look_at = parse_vector(look_at, "--look-at");
+    if (fov != 0) request.vertical_fov = fov;
+    tracer::BvhSettings bvh;
+    bvh.spatial_splits = spatial_splits;
+    return std::make_unique<tracer::PreparedScene>(tracer::load_scene(request, warn), bvh);
+}
+
+std::string SceneOptions::command() const {
+    std::string text = source;
+    if (detail != 0) text += fmt::format(" --detail {}", detail);
+    if (!camera.empty()) text += " --camera " + camera;
+    if (!eye.empty()) text += " --eye " + eye;
+    if (!look_at.empty()) text += " --look-at " + look_at;
+    if (fov != 0) text += fmt::format(" --fov {}", fov);
+    text += " --sky " + sky;
+    if (spatial_splits) text += " --spatial-splits";
+    return text;
+}
+
+void SamplingOptions::add_picture(CLI::App& app) {
+    app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    app.add_option("--bounces", bounces, "bounce rays of a path, 0 to 64")->capture_default_str();
+    app.add_flag("--russian-roulette", russian_roulette, "end dim paths early at random; breaks lock-step comparisons");
+}
+
+void SamplingOptions::add_strategy(CLI::App& app) {
+    app.add_option("--k", k, "K of micro-jitter's mu = min(1, K * N^(-1/s))")->capture_default_str();
+    app.add_option("--s", s, "s of the same formula: dimensions sampled jointly")->capture_default_str();
+    app.add_option("--mu", mu, "mu itself, 0 to 1, or 'cycles': Blender's one-sided 4/sqrt(N); overrides --k and --s");
+    app.add_option("--seed", seed, "seed of jitter, random numbers and the choice of sample indices")->capture_default_str();
+}
+
+void SamplingOptions::add_launches(CLI::App& app) {
+    app.add_option("--trace-samples", trace_samples,
+                   "how many of the N sample indices are traced: a seeded random subset, the same for every strategy")
+        ->capture_default_str();
+    app.add_option("--thread-map", thread_map,
+                   "tile: a warp = 8x4 pixels, one sample index; samples: a warp = one pixel, 32 sample indices")
+        ->capture_default_str();
+}
+
+tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, const std::string& decorrelation,
+                                                   std::uint64_t spp) const {
+    tracer::StrategySettings settings;
+    settings.sequence = sequence;
+    settings.decorrelation = decorrelation;
+    tracer::DecorrelationSettings& p = settings.parameters;
+    p.spp = spp;
+    p.seed = seed;
+    p.k = k;
+    p.s = s;
+    if (mu == "cycles") {
+        p.cycles_mu = true;
+    } else if (!mu.empty()) {
+        double value = 0;
+        const auto [stop, error] = std::from_chars(mu.data(), mu.data() + mu.size(), value);
+        if (error != std::errc{} || stop != mu.data() + mu.size())
+            throw UsageError(fmt::format("--mu '{}'; expected a number from 0 to 1, or 'cycles'", mu));
+        p.mu = value;
+    }
+    return settings;
+}
+
+tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, const std::string& sequence,
+                                                 const std::string& decorrelation, std::uint64_t spp) const {
+    tracer::CaptureSettings settings;
+    const Resolution size = parse_resolution(resolution);
+    settings.width = size.width;
+    settings.height = size.height;
+    settings.paths.bounces = bounces;
+    settings.paths.russian_roulette = russian_roulette;
+    settings.strategy = strategy(sequence, decorrelation, spp);
+    settings.trace_samples = trace_samples;
+    settings.thread_map = tracer::thread_map_from(thread_map);
+    settings.program = program_name();
+    settings.command = fmt::format(
+        "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
+        "--thread-map {} --k {} --s {}{} --seed {}",
+        scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces,
+        russian_roulette ? " --russian-roulette" : "", thread_map, k, s, mu.empty() ? "" : " --mu " + mu, seed);
+    return settings;
+}
+
+void ReportOptions::add(CLI::App& app, bool with_baseline) {
+    app.add_option("--gpu", gpus, "GPU preset or FILE.toml; may be repeated (see 'raycache list gpus')")
+        ->required()
+        ->delimiter(',');
+    app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's");
+    app.add_option("--by", by, "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
+        ->capture_default_str();
+    if (with_baseline)
+        app.add_option("--baseline", baseline, "strategy that ratios refer to; default: cranley-patterson where it is compared");
+    app.add_flag("--json", json, "print JSON");
+    app.add_flag("--csv", csv, "print CSV");
+    app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
+}
+
+std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
+    std::vector<cachesim::Gpu> loaded;
+    for (const std::string& name : gpus) {
+        loaded.push_back(cachesim::load_gpu(name));
+        if (warps_per_sm != 0) loaded.back().warps_per_sm = warps_per_sm;
+    }
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
+    parse_by(by);
+    return loaded;
+}
+
+void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
+    const cachesim::Report report = cachesim::make_report(series, baseline, parse_by(by));
+    if (!save.empty()) {
+        save_text(save + ".txt", cachesim::to_text(report));
+        save_text(save + ".json", cachesim::to_json(report));
+        save_text(save + ".csv", cachesim::to_csv(report));
+    }
+    print(json ? cachesim::to_json(report) : csv ? cachesim::to_csv(report) : cachesim::to_text(report));
+}
+
+void ThreadOptions::add(CLI::App& app) {
+    app.add_option("--threads", threads, "worker threads; default: all cores. Results do not depend on it")
+        ->check(CLI::Range(1, 1024));
+}
+
+std::shared_ptr<void> ThreadOptions::apply() const {
+    const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : std::max(1U, std::thread::hardware_concurrency());
+    return std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, wanted);
+}
+
+}  // namespace raycache::tools

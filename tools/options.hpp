@@ -1,0 +1,76 @@
+// Options that several subcommands share, declared once: names, help texts, checks, and the settings they make.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/report/report.hpp"
+#include "tracer/capture.hpp"
+#include "tracer/prepared_scene.hpp"
+
+namespace raycache::tools {
+
+/// Which scene, seen how. `add_scene_name` says whether the scene is a positional argument.
+struct SceneOptions {
+    std::string source, camera, eye, look_at, sky = "auto";
+    std::uint64_t detail = 0;
+    float fov = 0;
+    bool spatial_splits = false;
+
+    void add(CLI::App&, bool positional);
+    /// Loads the scene and builds everything on it; warnings go to stderr.
+    std::unique_ptr<tracer::PreparedScene> prepare() const;
+    /// The options as they would be typed, for a trace's provenance.
+    std::string command() const;
+};
+
+/// Paths and samples of one strategy, except its name and N.
+struct SamplingOptions {
+    std::string resolution = "512x512", thread_map = "tile", mu;
+    std::uint32_t bounces = 3;
+    bool russian_roulette = false;
+    double k = 2.5;
+    unsigned s = 2;
+    std::uint64_t seed = 1, trace_samples = 8;
+
+    void add_picture(CLI::App&);   ///< --resolution --bounces --russian-roulette
+    void add_strategy(CLI::App&);  ///< --k --s --mu --seed
+    void add_launches(CLI::App&);  ///< --trace-samples --thread-map
+
+    tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation, std::uint64_t spp) const;
+    tracer::CaptureSettings capture(const SceneOptions&, const std::string& sequence, const std::string& decorrelation,
+                                    std::uint64_t spp) const;
+};
+
+/// Which GPUs, and how the table is cut and printed.
+struct ReportOptions {
+    std::vector<std::string> gpus;
+    std::uint32_t warps_per_sm = 0;
+    std::string by = "none", baseline, save;
+    bool json = false, csv = false;
+
+    void add(CLI::App&, bool with_baseline);
+    std::vector<cachesim::Gpu> load_gpus() const;
+    /// Makes the report of `series`, prints it in the chosen format, and saves all formats where asked.
+    void publish(const std::vector<cachesim::Series>& series) const;
+};
+
+/// --threads, and the limit it sets for the life of the object this returns.
+struct ThreadOptions {
+    int threads = 0;
+
+    void add(CLI::App&);
+    std::shared_ptr<void> apply() const;
+};
+
+struct Resolution {
+    std::uint32_t width, height;
+};
+/// "512x512". Throws UsageError.
+Resolution parse_resolution(const std::string&);
+
+}  // namespace raycache::tools

@@ -1,0 +1,79 @@
+// raycache render: a picture of a scene, to see that it is what one thinks it is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "tools/options.hpp"
+#include "traces/error.hpp"
+#include "tracer/render.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    SamplingOptions sampling;
+    ThreadOptions threads;
+    std::string sequence = "sobol", decorrelation = "cranley-patterson", output;
+    std::uint64_t spp = 64;
+    float exposure = 0;
+};
+
+/// Stops that bring the log-average luminance to middle grey (Reinhard et al. 2002, eq. 1).
+float automatic_exposure(const tracer::Image& image) {
+    constexpr double darkest = 1e-4, middle_grey = 0.18;
+    double sum = 0;
+    for (const tracer::Vec3& pixel : image.pixels) sum += std::log2(std::max(darkest, double{tracer::luminance(pixel)}));
+    return static_cast<float>(std::log2(middle_grey) - sum / static_cast<double>(image.pixels.size()));
+}
+
+void run(const Options& o, bool given_exposure) {
+    tracer::check_image_name(o.output);
+    tracer::RenderSettings settings;
+    const Resolution size = parse_resolution(o.sampling.resolution);
+    settings.width = size.width;
+    settings.height = size.height;
+    settings.paths.bounces = o.sampling.bounces;
+    settings.paths.russian_roulette = o.sampling.russian_roulette;
+    settings.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
+    if (o.sampling.bounces > tracer::max_bounces)
+        throw UsageError(fmt::format("--bounces {}; expected 0 to {}", o.sampling.bounces, tracer::max_bounces));
+    const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
+
+    const auto limit = o.threads.apply();
+    const auto scene = o.scene.prepare();
+    tracer::Image image;
+    {
+        const std::uint64_t paths = std::uint64_t{size.width} * size.height * o.spp;
+        ProgressBar bar("render", paths, "paths");
+        image = tracer::render(*scene, settings, [&](std::uint64_t done) { bar.add(done, done); });
+    }
+    tracer::write_image(o.output, image, given_exposure ? o.exposure : automatic_exposure(image));
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
+    o->scene.add(*command, true);
+    command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")->required();
+    command->add_option("--spp", o->spp, "samples per pixel")->capture_default_str();
+    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")->capture_default_str();
+    command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    const CLI::Option* exposure =
+        command->add_option("--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
+    o->threads.add(*command);
+    command->footer(
+        "Examples:\n"
+        "  raycache render courtyard --spp 16 -o courtyard.png\n"
+        "  raycache render sponza.glb --camera gallery --resolution 1280x720 --spp 256 -o sponza.exr");
+    command->callback([o, exposure] { run(*o, exposure->count() != 0); });
+}
+
+}  // namespace raycache::tools

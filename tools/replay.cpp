@@ -1,0 +1,36 @@
+// raycache replay: one trace through one or more GPUs.
+#include "tools/commands.hpp"
+#include "tools/options.hpp"
+#include "tools/replay_job.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::string path;
+    ReportOptions report;
+    ThreadOptions threads;
+};
+
+void run(const Options& o) {
+    const auto gpus = o.report.load_gpus();
+    const auto limit = o.threads.apply();
+    o.report.publish(replay_files({o.path}, gpus));
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("replay", "Replay a trace through a GPU's caches");
+    command->add_option("TRACE", o->path, "trace file")->required();
+    o->report.add(*command, false);
+    o->threads.add(*command);
+    command->footer(
+        "Examples:\n"
+        "  raycache replay mj.rct --gpu gtx-980-ti\n"
+        "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

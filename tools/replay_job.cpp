@@ -1,0 +1,111 @@
+#include "tools/replay_job.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "cachesim/replay/replay.hpp"
+#include "tools/console.hpp"
+#include "traces/reader.hpp"
+
+namespace raycache::tools {
+namespace {
+
+/// Hands over the warps of one launch, in order.
+using Sink = std::function<void(traces::WarpTrace&&)>;
+
+/// Something that has launches.
+struct Source {
+    const traces::Header* header;
+    std::function<void(std::uint32_t launch, const Sink&)> deliver;  ///< thread-safe
+};
+
+std::uint64_t count_rays(const traces::WarpTrace& warp) {
+    std::uint64_t rays = 0;
+    for (const traces::Record& record : warp.records)
+        if (!record.is_access()) rays += record.lanes();
+    return rays;
+}
+
+std::vector<cachesim::Series> replay(const std::vector<Source>& sources, const std::vector<cachesim::Gpu>& gpus) {
+    std::vector<cachesim::Series> series;
+    std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
+    std::uint64_t warps = 0;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+        const traces::Header& header = *sources[s].header;
+        const traces::Provenance& p = header.provenance;
+        for (const cachesim::Gpu& gpu : gpus) {
+            cachesim::Series& made = series.emplace_back();
+            made.scene = p.scene;
+            made.strategy = p.decorrelation;
+            made.sequence = p.sequence;
+            made.parameters = p.parameters;
+            made.thread_map = p.thread_map;
+            made.gpu = gpu.name;
+            made.spp = p.spp;
+            made.launches.resize(header.launches.size());
+        }
+        for (std::uint32_t launch = 0; launch < header.launches.size(); ++launch) tasks.emplace_back(s, launch);
+        warps += std::uint64_t{header.warps_per_launch} * header.launches.size();
+    }
+
+    ProgressBar bar("replay", warps, "rays");
+    const auto run_task = [&](std::size_t task) {
+        const auto [s, launch] = tasks[task];
+        const traces::Header& header = *sources[s].header;
+        std::vector<cachesim::Replay> replays;
+        for (const cachesim::Gpu& gpu : gpus) replays.emplace_back(gpu, header.regions, header.launches[launch]);
+        sources[s].deliver(launch, [&](traces::WarpTrace&& warp) {
+            const std::uint64_t rays = count_rays(warp);
+            const auto shared = std::make_shared<const traces::WarpTrace>(std::move(warp));
+            for (cachesim::Replay& r : replays) r.push(shared);
+            bar.add(1, rays);
+        });
+        for (std::size_t g = 0; g < gpus.size(); ++g)
+            series[s * gpus.size() + g].launches[launch] = replays[g].finish();
+    };
+    // Each launch begins with cold caches, so launches are independent: one thread each.
+    tbb::parallel_for(std::size_t{0}, tasks.size(), run_task, tbb::simple_partitioner());
+    return series;
+}
+
+}  // namespace
+
+std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths, const std::vector<cachesim::Gpu>& gpus) {
+    std::vector<std::unique_ptr<traces::Reader>> readers;
+    std::vector<Source> sources;
+    for (const std::string& path : paths) {
+        readers.push_back(std::make_unique<traces::Reader>(path));
+        const traces::Reader* reader = readers.back().get();
+        sources.push_back({&reader->header(), [reader](std::uint32_t launch, const Sink& sink) {
+                               const auto& blocks = reader->blocks();
+                               const auto begin = std::partition_point(
+                                   blocks.begin(), blocks.end(), [&](const auto& b) { return b.launch < launch; });
+                               std::vector<traces::WarpTrace> warps;
+                               for (auto b = begin; b != blocks.end() && b->launch == launch; ++b) {
+                                   reader->read_block(static_cast<std::size_t>(b - blocks.begin()), warps);
+                                   for (traces::WarpTrace& warp : warps) sink(std::move(warp));
+                               }
+                           }});
+    }
+    return replay(sources, gpus);
+}
+
+std::vector<cachesim::Series> replay_captures(const std::vector<std::unique_ptr<tracer::Capture>>& captures,
+                                              const std::vector<cachesim::Gpu>& gpus) {
+    std::vector<Source> sources;
+    for (const auto& owned : captures) {
+        const tracer::Capture* capture = owned.get();
+        sources.push_back({&capture->header(), [capture](std::uint32_t launch, const Sink& sink) {
+                               const auto worker = capture->make_worker();
+                               for (std::uint32_t warp = 0; warp < capture->header().warps_per_launch; ++warp) {
+                                   traces::WarpTrace trace;
+                                   capture->trace_warp(*worker, launch, warp, trace);
+                                   sink(std::move(trace));
+                               }
+                           }});
+    }
+    return replay(sources, gpus);
+}
+
+}  // namespace raycache::tools

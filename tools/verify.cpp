@@ -1,0 +1,49 @@
+// raycache verify: check every record of a trace; save what is whole of a damaged one.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "traces/verify.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::string path, recovered;
+    bool json = false;
+};
+
+void run(const Options& o) {
+    nlohmann::ordered_json out;
+    std::string text;
+    if (o.recovered.empty()) {
+        const traces::VerifyResult r = traces::verify(o.path);
+        out = {{"blocks", r.blocks}, {"warps", r.warps}, {"records", r.records}, {"lane accesses", r.lane_accesses}, {"rays", r.rays}};
+        text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n", o.path, r.blocks, r.warps,
+                           r.records, r.lane_accesses, r.rays);
+    } else {
+        const traces::RecoverResult r = traces::recover(o.path, o.recovered);
+        out = {{"launches kept", r.launches_kept}, {"launches lost", r.launches_lost}, {"blocks kept", r.blocks_kept},
+               {"blocks lost", r.blocks_lost}};
+        text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", o.recovered, r.launches_kept,
+                           r.launches_kept + r.launches_lost, r.blocks_kept);
+    }
+    print(o.json ? out.dump(2) + "\n" : text);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("verify", "Check every checksum and record of a trace");
+    command->add_option("TRACE", o->path, "trace file")->required();
+    command->add_option("--recover", o->recovered, "write the launches that are whole to this new trace");
+    command->add_flag("--json", o->json, "print JSON");
+    command->footer("Examples:\n  raycache verify mj.rct\n  raycache verify damaged.rct --recover rest.rct");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,24 @@
+// A hit, ready for shading.
+#pragma once
+
+#include <cstdint>
+
+#include "tracer/ray.hpp"
+#include "tracer/scene/scene.hpp"
+
+namespace raycache::tracer {
+
+struct Surface {
+    Vec3 position;
+    Vec3 geometric_normal;  ///< unit, on the side the ray came from
+    Vec3 shading_normal;    ///< unit, interpolated where the scene has normals, on the same side
+    const Material* material = nullptr;
+
+    /// Where a ray that leaves to the side of `direction` starts: moved off the surface by a few ulps of its position
+    /// (C. Wächter, N. Binder: A Fast and Robust Method for Avoiding Self-Intersection, Ray Tracing Gems 2019, ch. 6).
+    Vec3 leave(Vec3 direction) const;
+};
+
+Surface surface_at(const Scene&, const Ray&, const Hit&);
+
+}  // namespace raycache::tracer

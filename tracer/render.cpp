@@ -1,0 +1,67 @@
+#include "tracer/render.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+#include "tracer/simt/recorder.hpp"
+#include "tracer/simt/thread_map.hpp"
+#include "tracer/simt/warp_traversal.hpp"
+
+namespace raycache::tracer {
+namespace {
+
+struct Worker {
+    Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy, const PathSettings& paths)
+        : traversal(scene.scene(), scene.bvh(), scene.texels(), recorder),
+          integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal) {}
+    Worker(const Worker&) = delete;  // its parts point at each other
+
+    NullRecorder recorder;
+    WarpTraversal<NullRecorder> traversal;
+    PathIntegrator<WarpTraversal<NullRecorder>> integrator;
+};
+
+}  // namespace
+
+Image render(const PreparedScene& scene, const RenderSettings& settings,
+             const std::function<void(std::uint64_t paths)>& progress) {
+    const SamplingStrategy strategy(settings.strategy, path_dimensions(settings.paths.bounces));
+    const CameraRays camera(scene.camera(), settings.width, settings.height);
+    const std::uint64_t spp = settings.strategy.parameters.spp;
+    const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
+
+    Image image{settings.width, settings.height, std::vector<Vec3>(std::size_t{settings.width} * settings.height)};
+    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
+        [&] { return std::make_unique<Worker>(scene, camera, strategy, settings.paths); });
+
+    // All warps of one sample index before the next: base points are computed once and memory stays that of one.
+    for (std::uint64_t sample = 0; sample < spp; ++sample) {
+        const std::vector<std::uint32_t> base = strategy.base_point(sample);
+        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, grid.warps(), 16), [&](const auto& range) {
+            std::uint64_t paths = 0;
+            for (std::uint32_t warp = range.begin(); warp != range.end(); ++warp) {
+                const WarpJobs jobs = grid.jobs(warp, static_cast<std::uint32_t>(sample));
+                if (jobs.mask == 0) continue;
+                std::array<PathLane, traces::warp_lanes> lanes;
+                std::array<Vec3, traces::warp_lanes> radiance;
+                for (unsigned l = 0; l < traces::warp_lanes; ++l) {
+                    const LaneJob& job = jobs.lane[l];
+                    lanes[l] = {job.x, job.y, job.y * settings.width + job.x, job.sample, base.data()};
+                }
+                workers.local()->integrator.trace(jobs.mask, lanes, radiance);
+                for (unsigned l = 0; l < traces::warp_lanes; ++l) {
+                    if (((jobs.mask >> l) & 1U) == 0) continue;
+                    image.pixels[lanes[l].pixel] += radiance[l] / static_cast<float>(spp);
+                    ++paths;
+                }
+            }
+            if (progress) progress(paths);
+        });
+    }
+    return image;
+}
+
+}  // namespace raycache::tracer

@@ -1,0 +1,24 @@
+// A picture by the same integrator, sampling and traversal that captures use, without recording.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "tracer/image.hpp"
+#include "tracer/paths/path_integrator.hpp"
+#include "tracer/prepared_scene.hpp"
+#include "tracer/sampling/sampling_strategy.hpp"
+
+namespace raycache::tracer {
+
+struct RenderSettings {
+    std::uint32_t width = 512, height = 512;  ///< pixels
+    PathSettings paths;
+    StrategySettings strategy;  ///< all N = strategy.parameters.spp samples are taken
+};
+
+/// Runs on all threads of the current TBB arena; the picture does not depend on their number. `progress` is called from any
+/// thread with the number of paths finished since the last call.
+Image render(const PreparedScene&, const RenderSettings&, const std::function<void(std::uint64_t paths)>& progress);
+
+}  // namespace raycache::tracer

@@ -1,0 +1,98 @@
+#include "tracer/sampling/sampling_strategy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <unordered_set>
+
+#include "tracer/sampling/hash.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tracer {
+
+namespace {
+
+constexpr std::uint64_t max_chosen = std::uint64_t{1} << 20;
+
+/// A stream of uniform integers from the counter-based hash.
+class RandomStream {
+public:
+    explicit RandomStream(std::uint64_t seed) : key_(seed, HashPurpose::sample_indices) {}
+
+    /// Uniform in 0 … bound-1, exactly: draws from the incomplete last block of 2^64 are thrown away.
+    std::uint64_t below(std::uint64_t bound) {
+        const std::uint64_t excess = (0 - bound) % bound;  // 2^64 mod bound
+        for (;;) {
+            const HashWords words = key_.words(counter_++, 0, 0);
+            const std::uint64_t draw = std::uint64_t{words[0]} << 32 | words[1];
+            if (draw <= std::numeric_limits<std::uint64_t>::max() - excess) return draw % bound;
+        }
+    }
+
+private:
+    HashKey key_;
+    std::uint32_t counter_ = 0;
+};
+
+}  // namespace
+
+SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32_t dimensions)
+    : settings_(settings),
+      dimensions_(dimensions),
+      sequence_(make_sequence(settings.sequence)),
+      decorrelation_(make_decorrelation(settings.decorrelation, settings.parameters)) {
+    if (dimensions > sequence_->dimensions()) {
+        throw UsageError(fmt::format(
+            "sampling: sequence '{}' must have a dimension for every random number of a path, expected at most {}, "
+            "found {}: trace fewer bounces or choose another sequence",
+            settings.sequence, sequence_->dimensions(), dimensions));
+    }
+}
+
+std::vector<std::uint32_t> SamplingStrategy::base_point(std::uint64_t index) const {
+    if (index >= settings_.parameters.spp) {
+        throw UsageError(
+            fmt::format("sampling: a sample index must be below the number of samples per pixel N = {}, found {}: "
+                        "raise N or choose "
+                        "a smaller index",
+                        settings_.parameters.spp, index));
+    }
+    std::vector<std::uint32_t> point(dimensions_);
+    for (std::uint32_t d = 0; d < dimensions_; ++d) {
+        point[d] = sequence_->sample(static_cast<std::uint32_t>(index), d);
+    }
+    return point;
+}
+
+std::vector<std::uint32_t> choose_sample_indices(std::uint64_t spp, std::uint64_t count, std::uint64_t seed) {
+    check_spp(spp);
+    if (count == 0) {
+        throw UsageError("sampling: the number of samples to trace must be 1 or more, found 0: ask for at least 1");
+    }
+    count = std::min(count, spp);
+    if (count > max_chosen) {
+        throw UsageError(fmt::format("sampling: at most {} of the N samples can be traced, found {}: ask for fewer",
+                                     max_chosen, count));
+    }
+    std::vector<std::uint32_t> chosen;
+    chosen.reserve(count);
+    if (count == spp) {
+        for (std::uint64_t i = 0; i < spp; ++i) chosen.push_back(static_cast<std::uint32_t>(i));
+        return chosen;
+    }
+    // R. W. Floyd's subset algorithm (J. Bentley, "Programming Pearls: a sample of brilliance", CACM 30(9), 1987):
+    // every subset is equally likely, with `count` draws however large spp is.
+    RandomStream random(seed);
+    std::unordered_set<std::uint32_t> taken;
+    taken.reserve(count);
+    for (std::uint64_t last = spp - count; last < spp; ++last) {
+        const auto candidate = static_cast<std::uint32_t>(random.below(last + 1));
+        chosen.push_back(taken.insert(candidate).second ? candidate : static_cast<std::uint32_t>(last));
+        taken.insert(chosen.back());
+    }
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+}  // namespace raycache::tracer

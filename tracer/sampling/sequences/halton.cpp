@@ -1,0 +1,62 @@
+// halton: dimension d is the radical inverse in the d-th prime base (2, 3, 5, …, 8161), not scrambled, 1024 dimensions.
+// J. H. Halton, "On the efficiency of certain quasi-random sequences of points in evaluating multi-dimensional
+// integrals", Numerische Mathematik 2, 1960.
+//
+// Exact: with k digits, the digits of i reversed are an integer r < base^k, and the result is floor(r * 2^32 / base^k).
+// High dimensions are poor for few points: the first `base` points are i / base, a plain ramp.
+#include "tracer/sampling/sequence.hpp"
+
+namespace raycache::tracer {
+
+namespace {
+
+constexpr std::uint32_t table_dimensions = 1024;
+
+__extension__ using Wide = unsigned __int128;  // r * 2^32 needs up to 77 bits
+
+std::vector<std::uint32_t> first_primes(std::size_t count) {
+    std::vector<std::uint32_t> primes;
+    primes.reserve(count);
+    for (std::uint32_t candidate = 2; primes.size() < count; ++candidate) {
+        bool is_prime = true;
+        for (const std::uint32_t p : primes) {
+            if (p * p > candidate) break;
+            if (candidate % p == 0) {
+                is_prime = false;
+                break;
+            }
+        }
+        if (is_prime) primes.push_back(candidate);
+    }
+    return primes;
+}
+
+class Halton final : public Sequence {
+public:
+    Halton() : bases_(first_primes(table_dimensions)) {}
+
+    std::uint32_t sample(std::uint32_t index, std::uint32_t dimension) const override {
+        const std::uint64_t base = bases_[dimension];
+        std::uint64_t reversed = 0;
+        std::uint64_t scale = 1;  // base^k, at most index * base < 2^45
+        for (std::uint64_t rest = index; rest != 0; rest /= base) {
+            reversed = reversed * base + rest % base;
+            scale *= base;
+        }
+        return static_cast<std::uint32_t>((Wide{reversed} << 32) / scale);
+    }
+
+    std::uint32_t dimensions() const override { return table_dimensions; }
+
+private:
+    std::vector<std::uint32_t> bases_;
+};
+
+}  // namespace
+
+SequenceEntry halton_entry() {
+    return {"halton", "Halton sequence, radical inverses in the first 1024 primes, not scrambled",
+            []() -> std::unique_ptr<Sequence> { return std::make_unique<Halton>(); }};
+}
+
+}  // namespace raycache::tracer

@@ -1,0 +1,37 @@
+// The list of sequences. To add one: write a file in this folder that defines `SequenceEntry NAME_entry()` in namespace
+// raycache::tracer, and add X(NAME) below.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tracer/sampling/sequence.hpp"
+#include "traces/error.hpp"
+
+#define RAYCACHE_SEQUENCES(X) \
+    X(sobol)                  \
+    X(halton)
+
+namespace raycache::tracer {
+
+#define X(name) SequenceEntry name##_entry();
+RAYCACHE_SEQUENCES(X)
+#undef X
+
+const std::vector<SequenceEntry>& sequences() {
+#define X(name) name##_entry(),
+    static const std::vector<SequenceEntry> all{RAYCACHE_SEQUENCES(X)};
+#undef X
+    return all;
+}
+
+std::unique_ptr<Sequence> make_sequence(const std::string& name) {
+    const auto& all = sequences();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
+    if (found != all.end()) return found->make();
+    std::string names;
+    for (const auto& entry : all) names += (names.empty() ? "" : ", ") + entry.name;
+    throw UsageError(
+        fmt::format("sampling: unknown sequence '{}', expected one of {}: choose one of them", name, names));
+}
+
+}  // namespace raycache::tracer

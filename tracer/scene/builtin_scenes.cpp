@@ -1,0 +1,14 @@
+#include "tracer/scene/courtyard/courtyard.hpp"
+#include "tracer/scene/scene.hpp"
+
+namespace raycache::tracer {
+
+const std::vector<BuiltinScene>& builtin_scenes() {
+    static const std::vector<BuiltinScene> scenes{
+        {"courtyard", "an arcaded yard with tables, railings, a fountain and trees of single leaves",
+         courtyard::default_detail, courtyard::min_detail, courtyard::max_detail, courtyard::build},
+    };
+    return scenes;
+}
+
+}  // namespace raycache::tracer

@@ -1,0 +1,40 @@
+// A glTF file taken apart: its structures, its buffers in memory, and its images still encoded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tracer/scene/gltf_container.hpp"
+#include "tracer/scene/gltf_model.hpp"
+#include "tracer/scene/gltf_report.hpp"
+
+namespace raycache::tracer {
+
+/// Where the bytes of one image are.
+struct GltfImage {
+    std::string name;              ///< its name or URI, for messages
+    std::optional<int> view;       ///< in a buffer view,
+    std::optional<std::string> uri;  ///< or behind a URI
+};
+
+struct GltfDocument {
+    GltfContainer container;
+    /// Without buffers, images, animations, skins and extras: the first two are below, the others have no use here.
+    tinygltf::Model model;
+    std::vector<std::span<const std::uint8_t>> buffers;           ///< one per buffer, exactly its byteLength
+    std::vector<std::vector<std::uint8_t>> owned_buffers;         ///< what data: URIs and external files held
+    std::vector<std::span<const std::uint8_t>> external_buffers;  ///< those of `owned_buffers` that were files
+    std::vector<GltfImage> images;
+};
+
+/// Reads the file and its buffers. Throws Error as load_gltf() does; also for a required extension we lack.
+GltfDocument read_gltf_document(const GltfReport&);
+
+/// The bytes of buffer view `index`; throws Error "WHERE: …" unless they lie within a buffer.
+std::span<const std::uint8_t> buffer_view_bytes(const GltfDocument&, int index, const std::string& where,
+                                                const GltfReport&);
+
+}  // namespace raycache::tracer

@@ -1,0 +1,125 @@
+#include "tracer/scene/gltf_flatten.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace raycache::tracer {
+
+namespace {
+
+template <class T>
+void append(std::vector<T>& list, std::size_t count, T value) {
+    list.insert(list.end(), count, value);
+}
+
+/// Takes back the vertices from `first_vertex` on, appending instead those of the usable triangles, unshared. Rare:
+/// it needs a transform that sends finite vertices beyond what we accept.
+void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_vertex, bool turn, Scene& scene,
+                             GltfLosses& losses) {
+    const std::vector<Vec3> moved(scene.positions.begin() + static_cast<std::ptrdiff_t>(first_vertex),
+                                  scene.positions.end());
+    scene.positions.resize(first_vertex);
+    const bool has_normals = !scene.normals.empty(), has_texcoords = !scene.texcoords.empty();
+    const std::vector<Vec3> normals(scene.normals.begin() + static_cast<std::ptrdiff_t>(has_normals ? first_vertex : 0),
+                                    scene.normals.end());
+    const std::vector<Vec2> texcoords(
+        scene.texcoords.begin() + static_cast<std::ptrdiff_t>(has_texcoords ? first_vertex : 0), scene.texcoords.end());
+    if (has_normals) scene.normals.resize(first_vertex);
+    if (has_texcoords) scene.texcoords.resize(first_vertex);
+    for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+        const std::uint32_t* corners = &primitive.indices[t];
+        if (!std::all_of(corners, corners + 3, [&](std::uint32_t v) { return is_usable_position(moved[v]); })) {
+            ++losses.bad_triangles;
+            continue;
+        }
+        for (const int k : {0, turn ? 2 : 1, turn ? 1 : 2}) {
+            scene.indices.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+            scene.positions.push_back(moved[corners[k]]);
+            if (has_normals) scene.normals.push_back(normals[corners[k]]);
+            if (has_texcoords) scene.texcoords.push_back(texcoords[corners[k]]);
+        }
+        scene.material_of.push_back(primitive.material);
+    }
+}
+
+void append_primitive(const GltfPrimitive& primitive, const Transform& to_world, bool with_normals, bool with_texcoords,
+                      Scene& scene, GltfLosses& losses) {
+    const std::size_t first_vertex = scene.positions.size(), count = primitive.positions.size();
+    bool usable = true;
+    for (const Vec3 p : primitive.positions) {
+        const Vec3 world = to_world.point(p);
+        usable = usable && is_usable_position(world);
+        scene.positions.push_back(world);
+    }
+    if (with_normals && primitive.normals.empty()) append(scene.normals, count, Vec3{0, 0, 0});
+    const NormalTransform normal_to_world(to_world);
+    for (const Vec3 n : primitive.normals) scene.normals.push_back(normal_to_world(n));
+    if (with_texcoords && primitive.texcoords.empty()) append(scene.texcoords, count, Vec2{0, 0});
+    scene.texcoords.insert(scene.texcoords.end(), primitive.texcoords.begin(), primitive.texcoords.end());
+
+    const bool turn = to_world.determinant() < 0;
+    if (!usable) {
+        append_usable_triangles(primitive, first_vertex, turn, scene, losses);
+        return;
+    }
+    const auto base = static_cast<std::uint32_t>(first_vertex);
+    for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+        scene.indices.push_back(base + primitive.indices[t]);
+        scene.indices.push_back(base + primitive.indices[t + (turn ? 2 : 1)]);
+        scene.indices.push_back(base + primitive.indices[t + (turn ? 1 : 2)]);
+    }
+    append(scene.material_of, primitive.indices.size() / 3, primitive.material);
+}
+
+}  // namespace
+
+void check_scene_size(const std::vector<GltfPlacement>& placements,
+                      const std::vector<std::vector<GltfPrimitiveSource>>& sources, const GltfReport& report) {
+    constexpr std::uint64_t triangle_bytes = 3 * sizeof(std::uint32_t) + sizeof(std::uint16_t);
+    constexpr std::uint64_t vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2);
+    std::uint64_t triangles = 0, bytes = 0;
+    const auto add = [&](const GltfPrimitiveSource& primitive) {
+        const std::uint64_t vertices = std::min(primitive.positions.count(), 3 * primitive.triangles);
+        triangles += primitive.triangles;
+        bytes += primitive.triangles * triangle_bytes + vertices * vertex_bytes;
+        if (triangles > max_scene_triangles)
+            report.fail("scene", fmt::format("at most {} triangles", max_scene_triangles), "more",
+                        "export a part of the scene");
+    };
+    for (const auto& mesh : sources)
+        for (const auto& primitive : mesh) add(primitive);  // each is decoded once
+    triangles = 0;
+    for (const GltfPlacement& placement : placements)
+        for (const auto& primitive : sources[static_cast<std::size_t>(placement.object)]) add(primitive);
+    const auto machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                         static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    if (bytes > machine)
+        report.fail("scene", fmt::format("at most the machine's memory, {} MiB", machine >> 20),
+                    fmt::format("{} MiB for {} triangles", bytes >> 20, triangles), "export a part of the scene");
+}
+
+void flatten_gltf_meshes(const std::vector<GltfPlacement>& placements,
+                         const std::vector<std::vector<GltfPrimitive>>& meshes, Scene& scene, GltfLosses& losses) {
+    std::size_t vertices = 0, indices = 0;
+    bool with_normals = false, with_texcoords = false;
+    for (const GltfPlacement& placement : placements) {
+        for (const GltfPrimitive& primitive : meshes[static_cast<std::size_t>(placement.object)]) {
+            vertices += primitive.positions.size();
+            indices += primitive.indices.size();
+            with_normals = with_normals || !primitive.normals.empty();
+            with_texcoords = with_texcoords || !primitive.texcoords.empty();
+        }
+    }
+    scene.positions.reserve(vertices);
+    if (with_normals) scene.normals.reserve(vertices);
+    if (with_texcoords) scene.texcoords.reserve(vertices);
+    scene.indices.reserve(indices);
+    scene.material_of.reserve(indices / 3);
+    for (const GltfPlacement& placement : placements)
+        for (const GltfPrimitive& primitive : meshes[static_cast<std::size_t>(placement.object)])
+            append_primitive(primitive, placement.to_world, with_normals, with_texcoords, scene, losses);
+}
+
+}  // namespace raycache::tracer

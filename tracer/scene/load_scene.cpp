@@ -1,0 +1,147 @@
+// load_scene(): a file or a built-in scene, lit and seen as asked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "tracer/scene/gltf_cameras.hpp"
+#include "tracer/scene/gltf_report.hpp"
+#include "tracer/scene/scene.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tracer {
+
+namespace {
+
+// A clear day, for scenes without a light of their own. Constants chosen here, not measured; only the ratio of sun to
+// sky shapes a picture, and none of it changes which rays are traced before the first bounce.
+constexpr Vec3 day_sky{0.6F, 0.75F, 1.0F};            // radiance
+constexpr Vec3 day_sun_direction{0.35F, 0.9F, 0.25F};  // to be normalised
+constexpr Vec3 day_sun_irradiance{6.0F, 5.6F, 5.0F};
+
+std::string builtin_names() {
+    std::string names;
+    for (const BuiltinScene& builtin : builtin_scenes()) names += (names.empty() ? "" : ", ") + builtin.name;
+    return names.empty() ? "none" : names;
+}
+
+Scene build(const BuiltinScene& builtin, std::uint64_t detail) {
+    if (detail == 0) detail = builtin.default_detail;
+    if (detail < builtin.min_detail || detail > builtin.max_detail)
+        throw UsageError(fmt::format("scene {}: expected a detail from {} to {} triangles, found {}; choose one within",
+                                     builtin.name, builtin.min_detail, builtin.max_detail, detail));
+    return builtin.build(detail);
+}
+
+Scene load_file(const SceneRequest& request, const Warn& warn) {
+    std::error_code error;
+    if (!std::filesystem::exists(request.source, error))
+        throw UsageError(one_line(
+            fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
+                        "the file does not exist; check the path",
+                        request.source, builtin_names())));
+    if (request.detail != 0)
+        throw UsageError(one_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
+                                              "one; leave it out",
+                                              request.source, request.detail, builtin_names())));
+    return load_gltf(request.source, warn);
+}
+
+/// An emissive material on triangles without area sends out nothing.
+bool has_emitter(const Scene& scene) {
+    for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
+        if (!(max_component(scene.materials[scene.material_of[t]].emission) > 0)) continue;
+        const Vec3 a = scene.positions[scene.indices[3 * t]], b = scene.positions[scene.indices[3 * t + 1]],
+                   c = scene.positions[scene.indices[3 * t + 2]];
+        if (max_component(max(cross(b - a, c - a), cross(c - a, b - a))) > 0) return true;
+    }
+    return false;
+}
+
+void light_file(Scene& scene, const SceneRequest& request, const Warn& warn) {
+    const auto sky = request.sky;
+    if (sky == SceneRequest::Sky::off) return;
+    const bool emitter = has_emitter(scene);
+    if (sky == SceneRequest::Sky::automatic && emitter) return;
+    scene.sky = day_sky;
+    if (emitter) return;
+    scene.sun = Sun{normalize(day_sun_direction), day_sun_irradiance};
+    if (sky == SceneRequest::Sky::automatic && warn)
+        warn(one_line(fmt::format("{}: the file has no light; a sky and a sun are added", request.source)));
+}
+
+std::size_t find_camera(const Scene& scene, const std::string& wanted) {
+    if (wanted.empty()) return 0;
+    const auto named = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                    [&](const Camera& camera) { return camera.name == wanted; });
+    if (named != scene.cameras.end()) return static_cast<std::size_t>(named - scene.cameras.begin());
+    std::size_t index = 0;
+    const char* end = wanted.data() + wanted.size();
+    const auto parsed = std::from_chars(wanted.data(), end, index);
+    if (parsed.ec == std::errc() && parsed.ptr == end && index < scene.cameras.size()) return index;
+    std::string valid;
+    for (const Camera& camera : scene.cameras) valid += (valid.empty() ? "" : ", ") + camera.name;
+    throw UsageError(one_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
+                                          "found no such one; choose one of these",
+                                          wanted, scene.name, valid, scene.cameras.size() - 1)));
+}
+
+std::string text(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+void aim(Camera& camera, Vec3 eye, Vec3 look_at) {
+    if (!is_finite(eye) || !is_finite(look_at))
+        throw UsageError(fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
+                                     "give three numbers for each",
+                                     text(eye), text(look_at)));
+    const double x = double{look_at.x} - eye.x, y = double{look_at.y} - eye.y, z = double{look_at.z} - eye.z;
+    const double distance = std::hypot(x, y, z);
+    if (!(distance > 0))
+        throw UsageError(fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one",
+                                     text(eye)));
+    camera.name = "eye";
+    camera.eye = eye;
+    camera.forward = {static_cast<float>(x / distance), static_cast<float>(y / distance),
+                      static_cast<float>(z / distance)};
+    camera.up = orthogonal_up(camera.forward, {0, 1, 0});
+}
+
+void choose_camera(Scene& scene, const SceneRequest& request) {
+    const auto chosen = static_cast<std::ptrdiff_t>(find_camera(scene, request.camera));
+    std::rotate(scene.cameras.begin(), scene.cameras.begin() + chosen, scene.cameras.begin() + chosen + 1);
+    if (request.eye.has_value() != request.look_at.has_value())
+        throw UsageError(fmt::format("camera: expected both an eye and a look-at point, found only {}; give both",
+                                     request.eye ? "an eye" : "a look-at point"));
+    if (request.eye) {
+        Camera camera = scene.cameras.front();
+        aim(camera, *request.eye, *request.look_at);
+        scene.cameras.insert(scene.cameras.begin(), camera);
+    }
+    if (request.vertical_fov) {
+        const float fov = *request.vertical_fov;
+        if (!(fov > 0) || !(fov < 180))
+            throw UsageError(fmt::format("camera: expected a vertical field of view above 0 and below 180 degrees, "
+                                         "found {}; choose one within",
+                                         fov));
+        scene.cameras.front().vertical_fov = fov;
+    }
+}
+
+}  // namespace
+
+Scene load_scene(const SceneRequest& request, const Warn& warn) {
+    const auto& builtins = builtin_scenes();
+    const auto builtin = std::find_if(builtins.begin(), builtins.end(),
+                                      [&](const BuiltinScene& b) { return b.name == request.source; });
+    Scene scene = builtin != builtins.end() ? build(*builtin, request.detail) : load_file(request, warn);
+    if (builtin == builtins.end()) light_file(scene, request, warn);
+    if (request.sky == SceneRequest::Sky::off) {
+        scene.sky = {0, 0, 0};
+        scene.sun.reset();
+    }
+    choose_camera(scene, request);
+    return scene;
+}
+
+}  // namespace raycache::tracer

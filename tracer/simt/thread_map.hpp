@@ -1,0 +1,49 @@
+// Which (pixel, sample) a lane gets.
+//
+// Both maps walk the picture in squares of 16x16 pixels, row by row, and each square in tiles of 8x4 pixels, so that
+// neighbours in dispatch order are neighbours in the picture.
+//   tile     a warp = the 32 pixels of one tile, one sample index. A launch is one sample index of every pixel.
+//   samples  a warp = one pixel, 32 consecutive sample indices. A launch is 32 sample indices of every pixel.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "traces/record.hpp"
+
+namespace raycache::tracer {
+
+enum class ThreadMap { tile, samples };
+
+/// Throws UsageError that lists the valid names.
+ThreadMap thread_map_from(const std::string& name);
+const char* to_string(ThreadMap);
+
+struct LaneJob {
+    std::uint32_t x = 0, y = 0;
+    std::uint32_t sample = 0;  ///< sample index
+};
+
+/// The lanes of one warp that have work: those inside the picture, and below N.
+struct WarpJobs {
+    std::uint32_t mask = 0;
+    std::array<LaneJob, traces::warp_lanes> lane{};
+};
+
+class LaunchGrid {
+public:
+    LaunchGrid(ThreadMap, std::uint32_t width, std::uint32_t height, std::uint64_t spp);
+
+    std::uint32_t warps() const { return warps_; }  ///< per launch; some may lie outside the picture and stay empty
+    WarpJobs jobs(std::uint32_t warp, std::uint32_t first_sample) const;
+    std::uint32_t samples_per_launch() const { return map_ == ThreadMap::tile ? 1 : traces::warp_lanes; }
+
+private:
+    ThreadMap map_;
+    std::uint32_t width_, height_, squares_across_, warps_;
+    std::uint64_t spp_;
+};
+
+}  // namespace raycache::tracer

@@ -1,0 +1,210 @@
+// 32 rays walk a bvh2 together, as the lanes of a warp do: "while-while" of Aila & Laine 2009. The warp repeats
+//   1. while a lane stands at an inner node: all such lanes visit their node (one warp access) and step to the nearer child hit, or
+//      pop; lanes that arrive at a leaf wait;
+//   2. while a waiting lane has an untested triangle: all such lanes test their next one (one warp access); then they pop.
+// Popped entries are not culled by distance: like the kernels this models, the stack holds no distances.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "tracer/bvh/layouts/bvh2.hpp"
+#include "tracer/ray.hpp"
+#include "tracer/scene/texel_layout.hpp"
+#include "tracer/simt/box_test.hpp"
+#include "tracer/simt/recorder.hpp"
+#include "tracer/simt/triangle_test.hpp"
+
+namespace raycache::tracer {
+
+/// `Recorder` is WarpRecorder to write a trace, NullRecorder to render.
+template <class Recorder>
+class WarpTraversal {
+public:
+    static constexpr unsigned lanes = traces::warp_lanes;
+
+    WarpTraversal(const Scene& scene, const Bvh2& bvh, const TexelLayout& texels, Recorder& recorder)
+        : scene_(&scene), bvh_(&bvh), texels_(&texels), recorder_(&recorder), stack_(std::size_t{lanes} * stride()) {}
+
+    /// Nearest hit of each lane in `mask`. Texels with alpha below the cutoff are holes.
+    void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {
+        begin(mask, type, bounce, rays, hits);
+        run<false>(hits);
+    }
+
+    /// Lanes whose ray meets anything in (t_min, t_max]: a lane stops at its first hit.
+    std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) {
+        Hit hits[lanes];
+        begin(mask, type, bounce, rays, hits);
+        return run<true>(hits);
+    }
+
+    /// The lanes of `mask` each read one texel for shading; lane l reads `elements[l]`.
+    void read_texels(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const std::uint32_t* elements) {
+        recorder_->kind(type, bounce);
+        record_texels(mask, elements);
+    }
+
+private:
+    std::size_t stride() const { return bvh_->stack_entries + 1; }  // a sentinel below the entries
+
+    /// One lane's place in the tree. The hot loop touches little else.
+    struct alignas(64) Lane {
+        BoxRay box;
+        std::uint32_t* top;     ///< the topmost stack entry; the sentinel `nothing` when the stack is empty
+        std::uint32_t current;  ///< where the lane stands: a node, a leaf, or nothing
+    };
+
+    void begin(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {
+        recorder_->kind(type, bounce);
+        recorder_->start_rays(mask);
+        node_mask_ = mask;
+        leaf_mask_ = 0;
+        for (std::uint32_t m = mask; m != 0; m &= m - 1) {
+            const auto l = static_cast<unsigned>(std::countr_zero(m));
+            lane_[l].box.set(rays[l]);
+            lane_[l].top = &stack_[l * stride()];
+            *lane_[l].top = ChildRef::nothing;
+            lane_[l].current = 0;
+            sheared_[l].set(rays[l]);
+            hits[l] = Hit{};
+            hits[l].t = rays[l].t_max;
+        }
+    }
+
+    template <bool any_hit>
+    std::uint32_t run(Hit* hits) {
+        std::uint32_t occluded_lanes = 0;
+        while ((node_mask_ | leaf_mask_) != 0) {
+            while (node_mask_ != 0) visit_nodes();
+            if (leaf_mask_ != 0) occluded_lanes |= visit_leaves<any_hit>(hits);
+        }
+        return occluded_lanes;
+    }
+
+    /// Takes the top entry off the lane's stack: `nothing` when it was empty, which ends the lane.
+    static std::uint32_t pop(Lane& lane) {
+        const std::uint32_t popped = *lane.top;
+        lane.top -= popped != ChildRef::nothing;
+        return popped;
+    }
+
+    /// All bits of `lane_bit` if `condition`, else 0; compiles to no branch.
+    static std::uint32_t bit_if(bool condition, std::uint32_t lane_bit) {
+        return lane_bit & (0U - static_cast<std::uint32_t>(condition));
+    }
+
+    /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has no branch.
+    void visit_nodes() {
+        std::uint32_t* element = recorder_->open(node_mask_, node_region);
+        const Bvh2Node* nodes = bvh_->nodes.data();
+        const Bvh2Triangle* triangles = bvh_->triangles.data();
+        std::uint32_t next_nodes = 0, leaves = leaf_mask_;
+        for (std::uint32_t m = node_mask_; m != 0; m &= m - 1) {
+            Lane& lane = lane_[std::countr_zero(m)];
+            *element++ = lane.current;
+            const Bvh2Node& node = nodes[lane.current];
+            const BoxHits hit = test_boxes(node, lane.box);
+            std::uint32_t* top = lane.top;
+            top[1] = node.child[hit.near ^ 1];  // counts only if both are hit
+            top += hit.mask & (hit.mask >> 1);
+            const std::uint32_t popped = *top;
+            const std::uint32_t none = ((hit.mask | (hit.mask >> 1)) & 1U) - 1U;  // all bits if no child is hit
+            const std::uint32_t ref = (popped & none) | (node.child[hit.near] & ~none);
+            lane.top = top - (none & static_cast<std::uint32_t>(popped != ChildRef::nothing));
+            lane.current = ref;
+            const std::uint32_t bit = m & (0U - m);
+            next_nodes |= bit_if(!ChildRef::is_leaf(ref), bit);
+            leaves |= bit_if(ref > ChildRef::nothing, bit);
+            const void* next = ChildRef::is_leaf(ref) ? static_cast<const void*>(triangles + ChildRef::first(ref)) : nodes + ref;
+            _mm_prefetch(static_cast<const char*>(next), _MM_HINT_T0);
+        }
+        recorder_->close(element);
+        node_mask_ = next_nodes;
+        leaf_mask_ = leaves;
+    }
+
+    template <bool any_hit>
+    std::uint32_t visit_leaves(Hit* hits) {
+        std::uint32_t occluded_lanes = 0;
+        std::uint32_t waiting = leaf_mask_;
+        for (std::uint32_t k = 0; waiting != 0; ++k) {
+            std::uint32_t more = 0, holes = 0;
+            std::uint32_t* element = recorder_->open(waiting, triangle_region);
+            for (std::uint32_t m = waiting; m != 0; m &= m - 1) {
+                const auto l = static_cast<unsigned>(std::countr_zero(m));
+                const std::uint32_t bit = m & (0U - m);
+                const std::uint32_t leaf = lane_[l].current;
+                const std::uint32_t index = ChildRef::first(leaf) + k;
+                *element++ = index;
+                more |= bit_if(k + 1 < ChildRef::count(leaf), bit);
+                const Bvh2Triangle& triangle = bvh_->triangles[index];
+                candidate_[l] = hits[l];
+                if (!test_triangle(triangle, sheared_[l], candidate_[l])) continue;
+                if (triangle.alpha != 0)
+                    holes |= bit;
+                else
+                    occluded_lanes |= accept(l, hits);
+            }
+            recorder_->close(element);
+            if (holes != 0) occluded_lanes |= test_holes(holes, hits);
+            waiting = any_hit ? more & ~occluded_lanes : more;
+        }
+        for (std::uint32_t m = leaf_mask_; m != 0; m &= m - 1) {
+            Lane& lane = lane_[std::countr_zero(m)];
+            const std::uint32_t bit = m & (0U - m);
+            lane.current = any_hit && (occluded_lanes & bit) != 0 ? ChildRef::nothing : pop(lane);
+            node_mask_ |= bit_if(!ChildRef::is_leaf(lane.current), bit);
+            if (lane.current <= ChildRef::nothing) leaf_mask_ &= ~bit;
+        }
+        return occluded_lanes;
+    }
+
+    /// Makes the lane's candidate its hit; returns the lane's bit.
+    std::uint32_t accept(unsigned l, Hit* hits) {
+        hits[l] = candidate_[l];
+        lane_[l].box.set_t_max(hits[l].t);
+        return 1U << l;
+    }
+
+    /// Candidates on materials that may have holes: reads their texels, accepts those that are solid.
+    std::uint32_t test_holes(std::uint32_t mask, Hit* hits) {
+        std::uint32_t elements[lanes];
+        std::uint32_t textured = 0, solid = 0;
+        for (std::uint32_t m = mask; m != 0; m &= m - 1) {
+            const auto l = static_cast<unsigned>(std::countr_zero(m));
+            const Hit& hit = candidate_[l];
+            const Material& material = scene_->materials[scene_->material_of[hit.triangle]];
+            float alpha = material.alpha;
+            if (material.base_color_texture >= 0) {
+                const auto texel =
+                    texels_->fetch(material.base_color_texture, texcoord_at(*scene_, hit.triangle, hit.u, hit.v));
+                elements[l] = texel.element;
+                alpha *= texel.alpha;
+                textured |= 1U << l;
+            }
+            if (alpha >= material.alpha_cutoff) solid |= accept(l, hits);
+        }
+        if (textured != 0) record_texels(textured, elements);
+        return solid;
+    }
+
+    void record_texels(std::uint32_t mask, const std::uint32_t* elements) {
+        std::uint32_t* out = recorder_->open(mask, texel_region);
+        for (; mask != 0; mask &= mask - 1) *out++ = elements[std::countr_zero(mask)];
+        recorder_->close(out);
+    }
+
+    const Scene* scene_;
+    const Bvh2* bvh_;
+    const TexelLayout* texels_;
+    Recorder* recorder_;
+    std::vector<std::uint32_t> stack_;
+    std::uint32_t node_mask_ = 0, leaf_mask_ = 0;  ///< lanes at inner nodes; lanes that wait at a leaf
+    Lane lane_[lanes];
+    ShearedRay sheared_[lanes];
+    Hit candidate_[lanes];
+};
+
+}  // namespace raycache::tracer

@@ -1,0 +1,85 @@
+// Little-endian integers in byte buffers; reads are bounded. Internal to traces/.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace raycache::traces {
+
+using Bytes = std::vector<std::uint8_t>;
+
+template <std::unsigned_integral T>
+T load(const std::uint8_t* p) {
+    T value = 0;
+    for (unsigned i = 0; i < sizeof(T); ++i) value = static_cast<T>(value | T{p[i]} << (8 * i));
+    return value;
+}
+
+template <std::unsigned_integral T>
+void store(std::uint8_t* p, T value) {
+    for (unsigned i = 0; i < sizeof(T); ++i) p[i] = static_cast<std::uint8_t>(value >> (8 * i));
+}
+
+template <std::unsigned_integral T>
+void append(Bytes& out, T value) {
+    out.resize(out.size() + sizeof(T));
+    store(out.data() + out.size() - sizeof(T), value);
+}
+
+inline void append(Bytes& out, std::span<const std::uint8_t> more) {
+    const std::size_t before = out.size();
+    out.resize(before + more.size());
+    if (!more.empty()) std::memcpy(out.data() + before, more.data(), more.size());
+}
+inline void append(Bytes& out, std::string_view text) {
+    append(out, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+/// Seven bits a byte, lowest first; the top bit of a byte says that another follows.
+inline void append_varint(Bytes& out, std::uint32_t value) {
+    for (; value >= 0x80; value >>= 7) out.push_back(static_cast<std::uint8_t>(value | 0x80));
+    out.push_back(static_cast<std::uint8_t>(value));
+}
+
+/// Differences of both signs as small unsigned numbers: 0, -1, 1, -2 … become 0, 1, 2, 3 …
+inline std::uint32_t zigzag(std::uint32_t difference) { return (difference << 1) ^ (0u - (difference >> 31)); }
+inline std::uint32_t unzigzag(std::uint32_t code) { return (code >> 1) ^ (0u - (code & 1)); }
+
+inline bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+/// Takes values off the front of a buffer; nothing once it is exhausted.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    template <std::unsigned_integral T>
+    std::optional<T> take() {
+        if (bytes_.size() < sizeof(T)) return std::nullopt;
+        const T value = load<T>(bytes_.data());
+        bytes_ = bytes_.subspan(sizeof(T));
+        return value;
+    }
+    std::optional<std::uint32_t> take_varint() {
+        std::uint64_t value = 0;
+        for (unsigned shift = 0; shift < 35 && !bytes_.empty(); shift += 7) {
+            const std::uint8_t byte = bytes_.front();
+            bytes_ = bytes_.subspan(1);
+            value |= std::uint64_t{byte & 0x7fu} << shift;
+            if (byte < 0x80) return value >> 32 ? std::nullopt : std::optional(static_cast<std::uint32_t>(value));
+        }
+        return std::nullopt;
+    }
+    bool empty() const { return bytes_.empty(); }
+
+private:
+    std::span<const std::uint8_t> bytes_;
+};
+
+}  // namespace raycache::traces

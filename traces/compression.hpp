@@ -1,0 +1,26 @@
+// zstd frames and XXH3-64 checksums. Internal to traces/.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "traces/bytes.hpp"
+#include "traces/fault.hpp"
+
+namespace raycache::traces {
+
+/// Appends one zstd frame that holds `raw` (nothing for no bytes); returns the bytes appended.
+std::size_t compress(std::span<const std::uint8_t> raw, int level, Bytes& out);
+
+/// Fills `raw`, whose size the caller has bounded, from one zstd frame; refuses any other content size.
+void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin&);
+
+std::uint64_t checksum(std::span<const std::uint8_t>);
+
+/// Refuses `whole` unless its last 8 bytes are the checksum of the bytes before them.
+void check_sealed(std::span<const std::uint8_t> whole, const Origin&, std::string_view what, std::string_view remedy);
+
+/// Appends the checksum of all bytes so far.
+void seal(Bytes&);
+
+}  // namespace raycache::traces
