@@ -11,9 +11,9 @@
 #include <optional>
 #include <string_view>
 
+#include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
-#include "tracer/tone_map.hpp"
 
 namespace raycache::tracer {
 
@@ -79,16 +79,19 @@ std::optional<FileKind> kind_of(const std::string& path) {
 FileKind require_kind(const std::string& path) {
     const auto kind = kind_of(path);
     if (!kind)
-        throw UsageError(fmt::format("{}: expected an image name that ends in .png, .jpg, .exr or .hdr, found another; "
-                                     "rename it",
-                                     path));
+        throw UsageError(
+            fmt::format("{}: expected an image name that ends in .png, .jpg, .exr or .hdr, found another; "
+                        "rename it",
+                        path));
     return *kind;
 }
 
 /// The file's bytes. Encoding in memory leaves nothing on the disk when it fails.
 std::vector<unsigned char> encode(const std::string& path, FileKind kind, const Image& image, float exposure_stops) {
-    const char* format = kind == FileKind::png ? "png" : kind == FileKind::jpeg ? "jpeg"
-                         : kind == FileKind::exr ? "openexr" : "hdr";
+    const char* format = kind == FileKind::png    ? "png"
+                         : kind == FileKind::jpeg ? "jpeg"
+                         : kind == FileKind::exr  ? "openexr"
+                                                  : "hdr";
     const bool linear = kind == FileKind::exr || kind == FileKind::hdr;
     const auto fail = [&](const std::string& why) {
         throw Error(fmt::format("{}: cannot encode the image ({}); choose another format", path, first_line(why)));
@@ -149,9 +152,10 @@ void write_image(const std::string& path, const Image& image, float exposure_sto
     const FileKind kind = require_kind(path);
     if (image.width == 0 || image.height == 0 || image.width > 65535 || image.height > 65535 ||
         image.pixels.size() != std::size_t{image.width} * image.height)
-        throw Error(fmt::format("{}: expected an image of 1 to 65535 pixels on each side, found {} x {} with {} pixels; "
-                                "choose another size",
-                                path, image.width, image.height, image.pixels.size()));
+        throw Error(
+            fmt::format("{}: expected an image of 1 to 65535 pixels on each side, found {} x {} with {} pixels; "
+                        "choose another size",
+                        path, image.width, image.height, image.pixels.size()));
     const std::vector<unsigned char> bytes = encode(path, kind, image, exposure_stops);
     traces::OutputFile file(path);
     file.write(std::span<const std::uint8_t>(bytes));

@@ -128,7 +128,6 @@ void Decoder::decode_access(const Header& header, Schedule& schedule, const Reco
         }
         followed |= bit;
         pending_[lane] = word & element_mask;
-        if (degree != 0) __builtin_prefetch(table + std::size_t{pending_[lane]} * degree);
         masks.add(lane, word);
     }
     schedule.sequential |= sequential;
@@ -208,11 +207,21 @@ void Decoder::decode_warp(const Header& header, Schedule& schedule, WarpTrace& w
         }
         if (count > static_cast<std::size_t>(end - out)) fault("lane accesses", "no more than the warp has", "more");
         switch (header.regions[record.region].degree) {
-            case 0: decode_access<0>(header, schedule, record, out); break;
-            case 2: decode_access<2>(header, schedule, record, out); break;
-            case 4: decode_access<4>(header, schedule, record, out); break;
-            case 8: decode_access<8>(header, schedule, record, out); break;
-            default: decode_access<runtime>(header, schedule, record, out); break;
+            case 0:
+                decode_access<0>(header, schedule, record, out);
+                break;
+            case 2:
+                decode_access<2>(header, schedule, record, out);
+                break;
+            case 4:
+                decode_access<4>(header, schedule, record, out);
+                break;
+            case 8:
+                decode_access<8>(header, schedule, record, out);
+                break;
+            default:
+                decode_access<runtime>(header, schedule, record, out);
+                break;
         }
         out += count;
     }
@@ -229,8 +238,7 @@ BlockHead Decoder::decode(const Header& header, std::span<const std::uint8_t> bl
     const std::uint8_t* stored = block.data() + format::block_head_bytes;
     for (unsigned s = 0; s < format::streams; ++s) {
         raw_[s].resize(head.sizes[s].raw);
-        decompress({stored, head.sizes[s].stored}, raw_[s],
-                   origin + static_cast<std::uint64_t>(stored - block.data()));
+        decompress({stored, head.sizes[s].stored}, raw_[s], origin + static_cast<std::uint64_t>(stored - block.data()));
         stored += head.sizes[s].stored;
     }
     control_ = ByteReader(raw_[format::control]);

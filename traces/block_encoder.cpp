@@ -29,8 +29,8 @@ private:
     void encode_control(const Schedule&, const Record&);
     void encode_starts(Schedule&, std::uint32_t mask, const Successor*);
     template <unsigned fixed_degree>
-    [[gnu::noinline]] void encode_access(const Header&, Schedule&, const Record&, const std::uint32_t*, const Successor*,
-                       const NextIn&);
+    [[gnu::noinline]] void encode_access(const Header&, Schedule&, const Record&, const std::uint32_t*,
+                                         const Successor*, const NextIn&);
     std::uint8_t spell(Schedule&, unsigned lane, std::uint32_t next_region, std::uint32_t next_element,
                        const Successor&);
     Block assemble(std::span<const WarpTrace>);
@@ -46,8 +46,8 @@ private:
 };
 
 /// A symbol that is no depth, and the literal if it is one. `next_…` is what `sequential` would mean.
-std::uint8_t Encoder::spell(Schedule& schedule, unsigned lane, std::uint32_t next_region,
-                            std::uint32_t next_element, const Successor& to) {
+std::uint8_t Encoder::spell(Schedule& schedule, unsigned lane, std::uint32_t next_region, std::uint32_t next_element,
+                            const Successor& to) {
     if (to.none()) return format::end_of_ray;
     const std::uint32_t bit = 1u << lane;
     schedule.waiting[to.region] |= bit;
@@ -88,16 +88,17 @@ void Encoder::encode_access(const Header& header, Schedule& schedule, const Reco
         const std::uint32_t element = *elements, word = to->word;
         const std::uint32_t* links = table + std::size_t{element} * degree;
         LaneStack& stack = stacks_[lane];
-        if (degree != 0) __builtin_prefetch(table + std::size_t{word & element_mask} * degree);
         unsigned symbol = not_found;
         if (degree == 0 && linkable && word == (high | element) + 1) {
             symbol = format::sequential;
             sequential |= left & (0u - left);
         } else if (word < no_word) [[likely]] {
             symbol = find_depth(stack, links, degree, word);
-            if (symbol != not_found) [[likely]] stack.follow(links, degree, symbol);
+            if (symbol != not_found) [[likely]]
+                stack.follow(links, degree, symbol);
         }
-        if (symbol == not_found) [[unlikely]] symbol = spell(schedule, lane, record.region, element + 1, *to);
+        if (symbol == not_found) [[unlikely]]
+            symbol = spell(schedule, lane, record.region, element + 1, *to);
         *out++ = static_cast<std::uint8_t>(symbol);
     }
     end = out;
@@ -155,11 +156,21 @@ void Encoder::encode_warp(const Header& header, Schedule& schedule, const WarpTr
             encode_starts(schedule, record.mask, to);
         } else {
             switch (header.regions[record.region].degree) {
-                case 0: encode_access<0>(header, schedule, record, elements, to, *next_in); break;
-                case 2: encode_access<2>(header, schedule, record, elements, to, *next_in); break;
-                case 4: encode_access<4>(header, schedule, record, elements, to, *next_in); break;
-                case 8: encode_access<8>(header, schedule, record, elements, to, *next_in); break;
-                default: encode_access<runtime>(header, schedule, record, elements, to, *next_in); break;
+                case 0:
+                    encode_access<0>(header, schedule, record, elements, to, *next_in);
+                    break;
+                case 2:
+                    encode_access<2>(header, schedule, record, elements, to, *next_in);
+                    break;
+                case 4:
+                    encode_access<4>(header, schedule, record, elements, to, *next_in);
+                    break;
+                case 8:
+                    encode_access<8>(header, schedule, record, elements, to, *next_in);
+                    break;
+                default:
+                    encode_access<runtime>(header, schedule, record, elements, to, *next_in);
+                    break;
             }
             elements += count;
         }
@@ -177,17 +188,19 @@ Block Encoder::encode(const Header& header, std::span<const WarpTrace> warps) {
     std::uint64_t lanes = 0;
     for (std::size_t i = 0; i < warps.size(); ++i) {
         if (warps[i].launch != warps[0].launch || warps[i].warp != warps[0].warp + i)
-            throw Error(fmt::format("trace block: expected launch {} warp {}, found launch {} warp {}; a block holds "
-                                    "consecutive warps of one launch",
-                                    warps[0].launch, warps[0].warp + i, warps[i].launch, warps[i].warp));
+            throw Error(
+                fmt::format("trace block: expected launch {} warp {}, found launch {} warp {}; a block holds "
+                            "consecutive warps of one launch",
+                            warps[0].launch, warps[0].warp + i, warps[i].launch, warps[i].warp));
         records_ += warps[i].records.size();
         lane_accesses_ += warps[i].elements.size();
         for (const Record& record : warps[i].records) lanes += record.lanes();
     }
     if (lanes > format::max_block_lanes || records_ > format::max_block_records)
-        throw Error(fmt::format("trace block: expected at most {} lane accesses and rays, found {} in {} warps; put fewer "
-                                "warps into a block",
-                                format::max_block_lanes, lanes, warps.size()));
+        throw Error(
+            fmt::format("trace block: expected at most {} lane accesses and rays, found {} in {} warps; put fewer "
+                        "warps into a block",
+                        format::max_block_lanes, lanes, warps.size()));
     control_.clear();
     for (Bytes& plane : literals_) plane.clear();
     const std::size_t symbols = lanes + warp_lanes * warps.size();
@@ -202,15 +215,20 @@ Block Encoder::encode(const Header& header, std::span<const WarpTrace> warps) {
 }
 
 Block Encoder::assemble(std::span<const WarpTrace> warps) {
-    Block block{warps[0].launch, warps[0].warp, static_cast<std::uint32_t>(warps.size()), records_, lane_accesses_,
-                rays_,           {}};
+    Block block{
+        warps[0].launch, warps[0].warp, static_cast<std::uint32_t>(warps.size()), records_, lane_accesses_, rays_, {}};
     BlockHead head{0, block.launch, block.first_warp, block.warps, block.records, block.lane_accesses, block.rays, {}};
     const auto until = [](const Bytes& buffer, const std::uint8_t* end) {
         return std::span(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
     };
-    const std::array<std::span<const std::uint8_t>, format::streams> raw{
-        control_,     until(linked_, linked_end_), until(other_, other_end_), literals_[0],
-        literals_[1], literals_[2],                literals_[3],              literals_[4]};
+    const std::array<std::span<const std::uint8_t>, format::streams> raw{control_,
+                                                                         until(linked_, linked_end_),
+                                                                         until(other_, other_end_),
+                                                                         literals_[0],
+                                                                         literals_[1],
+                                                                         literals_[2],
+                                                                         literals_[3],
+                                                                         literals_[4]};
     block.bytes.resize(format::block_head_bytes);
     for (unsigned s = 0; s < format::streams; ++s)
         head.sizes[s] = {static_cast<std::uint32_t>(raw[s].size()),

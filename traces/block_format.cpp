@@ -25,8 +25,9 @@ BlockHead parse_block_head(std::span<const std::uint8_t> block, const Origin& or
         refuse(origin, "block", fmt::format("at least {} bytes", frame), fmt::format("{}", block.size()));
     if (!starts_with(block, format::block_magic)) refuse(origin, "block magic", "RCBLOCK", "other bytes");
     const std::uint8_t* p = block.data();
-    BlockHead head{load<std::uint32_t>(p + 8),  load<std::uint32_t>(p + 12), load<std::uint32_t>(p + 16),
-                   load<std::uint32_t>(p + 20), load<std::uint64_t>(p + 24), load<std::uint64_t>(p + 32),
+    BlockHead head{load<std::uint32_t>(p + 8),  load<std::uint32_t>(p + 12),
+                   load<std::uint32_t>(p + 16), load<std::uint32_t>(p + 20),
+                   load<std::uint64_t>(p + 24), load<std::uint64_t>(p + 32),
                    load<std::uint64_t>(p + 40), {}};
     const auto bound = [&](std::uint64_t at, const char* what, std::uint64_t value, std::uint64_t most) {
         if (value > most)
@@ -57,8 +58,8 @@ BlockHead parse_block_head(std::span<const std::uint8_t> block, const Origin& or
         if (head.sizes[s].raw != literals)
             refuse(origin + 48 + 8 * s, "raw size of a literal stream", fmt::format("{}", literals),
                    fmt::format("{}", head.sizes[s].raw));
-    const std::uint64_t coded = std::uint64_t{head.sizes[format::linked_symbols].raw} +
-                                head.sizes[format::other_symbols].raw;
+    const std::uint64_t coded =
+        std::uint64_t{head.sizes[format::linked_symbols].raw} + head.sizes[format::other_symbols].raw;
     if (head.lane_accesses + head.rays > coded || head.records > coded)
         refuse(origin + 24, "symbols of the block", "one per lane access and ray", fmt::format("{} in all", coded));
     if (head.bytes != end + format::checksum_bytes)

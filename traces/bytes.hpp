@@ -31,14 +31,8 @@ void append(Bytes& out, T value) {
     store(out.data() + out.size() - sizeof(T), value);
 }
 
-inline void append(Bytes& out, std::span<const std::uint8_t> more) {
-    const std::size_t before = out.size();
-    out.resize(before + more.size());
-    if (!more.empty()) std::memcpy(out.data() + before, more.data(), more.size());
-}
-inline void append(Bytes& out, std::string_view text) {
-    append(out, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-}
+void append(Bytes& out, std::span<const std::uint8_t> more);
+void append(Bytes& out, std::string_view text);
 
 /// Seven bits a byte, lowest first; the top bit of a byte says that another follows.
 inline void append_varint(Bytes& out, std::uint32_t value) {

@@ -48,8 +48,7 @@ void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> ra
     if (content != raw.size())
         refuse(origin, "zstd frame", fmt::format("{} bytes of content", raw.size()),
                content >= ZSTD_CONTENTSIZE_ERROR ? "no readable size" : fmt::format("{} bytes", content));
-    const std::size_t size =
-        ZSTD_decompressDCtx(decompressor(), raw.data(), raw.size(), stored.data(), stored.size());
+    const std::size_t size = ZSTD_decompressDCtx(decompressor(), raw.data(), raw.size(), stored.data(), stored.size());
     if (ZSTD_isError(size)) refuse(origin, "zstd frame", "a whole frame", ZSTD_getErrorName(size));
     if (size != raw.size())
         refuse(origin, "zstd frame", fmt::format("{} bytes of content", raw.size()), fmt::format("{} bytes", size));
@@ -62,7 +61,8 @@ void check_sealed(std::span<const std::uint8_t> whole, const Origin& origin, std
     const auto body = whole.first(whole.size() - format::checksum_bytes);
     const std::uint64_t stored = load<std::uint64_t>(whole.data() + body.size());
     const std::uint64_t computed = checksum(body);
-    if (stored != computed) refuse(origin, fmt::format("checksum of the {}", what), hex64(stored), hex64(computed), remedy);
+    if (stored != computed)
+        refuse(origin, fmt::format("checksum of the {}", what), hex64(stored), hex64(computed), remedy);
 }
 
 void seal(Bytes& bytes) { append(bytes, checksum(bytes)); }

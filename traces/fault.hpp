@@ -19,8 +19,10 @@ struct Origin {
     Origin operator+(std::uint64_t bytes) const { return {path, offset + bytes}; }
 };
 
-inline constexpr std::string_view salvage = "the file is damaged: keep its whole launches with `raycache verify --recover`";
-inline constexpr std::string_view recapture = "the head of the file is damaged: copy the file again or capture it again";
+inline constexpr std::string_view salvage =
+    "the file is damaged: keep its whole launches with `raycache verify --recover`";
+inline constexpr std::string_view recapture =
+    "the head of the file is damaged: copy the file again or capture it again";
 
 /// Throws the Error "PATH: offset N: WHAT: expected X, found Y; REMEDY".
 [[noreturn]] inline void refuse(const Origin& origin, std::string_view what, const std::string& expected,

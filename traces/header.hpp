@@ -20,9 +20,9 @@ struct Region {
     std::uint64_t base = 0;          ///< byte address of element 0; a multiple of 2 MiB
     std::uint32_t element_size = 0;  ///< bytes that one access reads, 1 … 4096
     std::uint32_t stride = 0;        ///< bytes from one element to the next, >= element_size
-    std::uint32_t count = 0;         ///< elements, 0 … 2^30 - 1 where another region links to them
+    std::uint32_t count = 0;         ///< elements, 0 … 2^30 - 1
 
-    /// Optional successor table: `degree` links per element. A BVH node links to its children. The codec predicts a
+    /// Optional successor table: `degree` (0 … 16) links per element. A BVH node links to its children. The codec predicts a
     /// lane's next access from it, and analyses derive BVH depth from it. A link is (region index << 30) | element
     /// index, or `no_link`. Only regions 0 … 2 can be linked to, elements below 2^30 - 1.
     std::uint8_t degree = 0;

@@ -15,7 +15,8 @@ namespace {
 using format::fixed_header_bytes;
 
 /// Refuses `value` outside [least, most].
-void bound(const Origin& origin, const std::string& what, std::uint64_t value, std::uint64_t least, std::uint64_t most) {
+void bound(const Origin& origin, const std::string& what, std::uint64_t value, std::uint64_t least,
+           std::uint64_t most) {
     if (value < least || value > most)
         refuse(origin, what, fmt::format("{} to {}", least, most), fmt::format("{}", value), recapture);
 }
@@ -51,7 +52,8 @@ void check_links(const Header& header, unsigned self) {
         const std::uint32_t to = link >> 30, element = link & 0x3fffffffu;
         if (link != no_link && (to == 3 || to >= header.regions.size() || element >= header.regions[to].count))
             refuse(origin, fmt::format("link of region {}", self), "an element of regions 0 to 2",
-                   fmt::format("element {} of region {}", element, to), "link to an element that exists, or use no_link");
+                   fmt::format("element {} of region {}", element, to),
+                   "link to an element that exists, or use no_link");
     }
 }
 
@@ -141,17 +143,21 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
     header.warps_per_launch = warps;
     for (std::uint32_t i = 0; i < launches; ++i)
         header.launches.push_back(load<std::uint32_t>(p + fixed_header_bytes + 4 * std::size_t{i}));
-    header.provenance = provenance_from_json({reinterpret_cast<const char*>(p + provenance), text}, origin + provenance);
+    header.provenance =
+        provenance_from_json({reinterpret_cast<const char*>(p + provenance), text}, origin + provenance);
     for (unsigned i = 0; i < regions; ++i) {
         const std::uint64_t at = table + format::region_bytes * i;
         const std::uint8_t* entry = p + at;
-        header.regions.push_back({static_cast<ObjectKind>(entry[0]), load<std::uint64_t>(entry + 8),
-                                  load<std::uint32_t>(entry + 4), load<std::uint32_t>(entry + 16),
-                                  load<std::uint32_t>(entry + 20), entry[1], {}});
+        header.regions.push_back({static_cast<ObjectKind>(entry[0]),
+                                  load<std::uint64_t>(entry + 8),
+                                  load<std::uint32_t>(entry + 4),
+                                  load<std::uint32_t>(entry + 16),
+                                  load<std::uint32_t>(entry + 20),
+                                  entry[1],
+                                  {}});
         check_region(header.regions.back(), i, origin + at);
         bound(origin + at + 2, fmt::format("link prediction of region {}", i), entry[2], 0, link_predictions - 1);
-        if (entry[3] != 0)
-            refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
+        if (entry[3] != 0) refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
     }
     std::uint64_t links = provenance + text;
     for (unsigned i = 0; i < regions; ++i) {

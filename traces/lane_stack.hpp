@@ -1,8 +1,8 @@
 // What a lane may read next: the links it saw and did not take. Shared by encoder and decoder, so that both always hold
 // the same stacks. Internal to traces/.
 //
-// A word is (region << 30) | element with region 0 … 2, as in Region::links. Words with both top bits set are no element
-// that can be linked to; `no_link` is one of them.
+// A word is (region << 30) | element with region 0 … 2, as in Region::links. Words with both top bits set are no
+// element that can be linked to; `no_link` is one of them.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace raycache::traces {
 
 inline constexpr unsigned element_bits = 30;
 inline constexpr std::uint32_t element_mask = (1u << element_bits) - 1;
-inline constexpr std::uint32_t unlinkable = 3;  ///< top bits of a word that no link can hold
+inline constexpr std::uint32_t unlinkable = 3;                        ///< top bits of a word that no link can hold
 inline constexpr std::uint32_t no_word = unlinkable << element_bits;  ///< the first such word
 
 struct LaneStack {

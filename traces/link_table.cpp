@@ -12,11 +12,12 @@ namespace {
 
 constexpr int level = 3;
 
-/// Maps links to codes near zero and back. A code is the target region (3 for no link) in the top bits over the element's
-/// zigzag difference, modulo 2^30, from the prediction.
+/// Maps links to codes near zero and back. A code is the target region (3 for no link) in the top bits over the
+/// element's zigzag difference, modulo 2^30, from the prediction.
 class LinkCoder {
 public:
-    LinkCoder(LinkPrediction prediction, unsigned self) : from_element_(prediction == LinkPrediction::element), self_(self) {}
+    LinkCoder(LinkPrediction prediction, unsigned self)
+        : from_element_(prediction == LinkPrediction::element), self_(self) {}
 
     std::uint32_t encode(std::uint32_t element, std::uint32_t link) {
         if (link == no_link) return unlinkable << element_bits;
@@ -49,6 +50,7 @@ private:
 EncodedLinks encode_links(const Region& region, unsigned self) {
     EncodedLinks best;
     const std::size_t count = region.links.size();
+    if (count == 0) return best;
     Bytes planes(count * 4);
     for (const auto prediction : {LinkPrediction::element, LinkPrediction::previous}) {
         LinkCoder coder(prediction, self);

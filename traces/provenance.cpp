@@ -63,7 +63,8 @@ std::string provenance_to_json(const Provenance& provenance) {
     try {
         return object.dump();
     } catch (const json::exception&) {
-        throw Error("provenance of the trace: expected UTF-8 text, found other bytes; use a scene and file name in UTF-8");
+        throw Error(
+            "provenance of the trace: expected UTF-8 text, found other bytes; use a scene and file name in UTF-8");
     }
 }
 
@@ -71,15 +72,15 @@ Provenance provenance_from_json(std::string_view text, const Origin& origin) {
     const json object = json::parse(text, nullptr, false);
     if (!object.is_object()) wrong(origin, "text", "a JSON object", "something else");
     Provenance provenance;
-    each_member(provenance, [&](const char* key, auto& member) { read(find(object, key, origin), key, member, origin); });
+    each_member(provenance,
+                [&](const char* key, auto& member) { read(find(object, key, origin), key, member, origin); });
     std::string hash;
     read(find(object, "scene_hash", origin), "scene_hash", hash, origin);
     const char* end = hash.data() + hash.size();
     if (hash.size() != 18 || !hash.starts_with("0x") ||
         std::from_chars(hash.data() + 2, end, provenance.scene_hash, 16).ptr != end)
         wrong(origin, "scene_hash", "0x and 16 hexadecimal digits", "another string");
-    if (object.size() != members)
-        wrong(origin, "keys", "15", fmt::format("{}", object.size()));
+    if (object.size() != members) wrong(origin, "keys", "15", fmt::format("{}", object.size()));
     return provenance;
 }
 

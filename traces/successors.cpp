@@ -10,9 +10,10 @@ namespace raycache::traces {
 namespace {
 
 [[noreturn]] void reject(const WarpTrace& warp, std::size_t record, const std::string& what) {
-    throw Error(fmt::format("trace to be written: launch {}, warp {}, record {}: {}; this is a fault of the program that "
-                            "made the records, please report it",
-                            warp.launch, warp.warp, record, what));
+    throw Error(
+        fmt::format("trace to be written: launch {}, warp {}, record {}: {}; this is a fault of the program that "
+                    "made the records, please report it",
+                    warp.launch, warp.warp, record, what));
 }
 
 void check(const Header& header, const WarpTrace& warp, std::size_t i, const Record& record) {
@@ -50,7 +51,8 @@ void SuccessorFinder::find(const Header& header, const WarpTrace& warp) {
         out -= count;
         Successor* to = out;
         next_in[i] = in;
-        for (unsigned r = 0; r < in.size(); ++r) in[r] = (in[r] & ~record.mask) | (r == record.region ? record.mask : 0);
+        for (unsigned r = 0; r < in.size(); ++r)
+            in[r] = (in[r] & ~record.mask) | (r == record.region ? record.mask : 0);
         if (!record.is_access()) {
             for (std::uint32_t left = record.mask; left != 0; left &= left - 1) {
                 Successor& lane = next[static_cast<unsigned>(std::countr_zero(left))];
@@ -72,7 +74,8 @@ void SuccessorFinder::find(const Header& header, const WarpTrace& warp) {
             outside |= element >= limit;
         }
         if (outside)
-            reject(warp, i, fmt::format("expected elements of region {} below {}, found one beyond", record.region, limit));
+            reject(warp, i,
+                   fmt::format("expected elements of region {} below {}, found one beyond", record.region, limit));
     }
     at_start = next;
     lanes_at_start = 0;

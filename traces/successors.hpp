@@ -25,7 +25,7 @@ public:
     /// Throws Error if the warp breaks a rule of record.hpp.
     void find(const Header&, const WarpTrace&);
 
-    std::vector<Successor> after;                ///< of each lane of each record, in order; a ray start has them too
+    std::vector<Successor> after;  ///< of each lane of each record, in order; a ray start has them too
     /// For each record, lanes (not only its own) whose next access, after the record, is in region 0, 1, 2.
     std::vector<std::array<std::uint32_t, 3>> next_in;
     std::array<Successor, warp_lanes> at_start;  ///< by lane: accesses that no ray start of the warp precedes

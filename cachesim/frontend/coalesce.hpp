@@ -34,12 +34,8 @@ public:
           sectors_per_line_(line_bytes / sector_bytes) {
         std::size_t most_lines = 1;
         for (std::size_t i = 0; i < regions.size(); ++i) {
-            const traces::Region& r = regions[i];
-            const bool one_line =
-                r.base % line_bytes == 0 && r.stride <= line_bytes && r.stride && line_bytes % r.stride == 0;
-            layouts_.push_back(
-                {r.base, r.stride, r.element_size - 1, one_line && r.element_size <= r.stride, ids.offset(i)});
-            most_lines = std::max<std::size_t>(most_lines, (r.element_size - 1) / line_bytes + 2);
+            layouts_.push_back(make_layout(regions[i], ids.offset(i), line_bytes));
+            most_lines = std::max<std::size_t>(most_lines, (regions[i].element_size - 1) / line_bytes + 2);
         }
         max_requests_ = most_lines * traces::warp_lanes;
         // At most a quarter full, so that a probe rarely meets another line.
@@ -54,55 +50,27 @@ public:
     /// max_requests(), with cache and group as in `like`.
     Coalesced operator()(std::size_t region, const std::uint32_t* elements, unsigned lanes, const Request& like,
                          Request* out) {
-        const Layout layout = layouts_[region];
         if (++generation_ == 0) {  // after 2^32 accesses: forget what looks like new
             std::fill(table_.begin(), table_.end(), Entry{});
             generation_ = 1;
         }
-        Coalesced result;
-        const auto touch = [&](std::uint64_t line, std::uint32_t sectors) {
-            std::size_t at = (line * 0x9e3779b97f4a7c15ull) >> table_shift_;
-            while (table_[at].generation == generation_ && table_[at].line != line)
-                [[unlikely]] at = (at + 1) & (table_.size() - 1);
-            Entry& entry = table_[at];
-            const bool seen = entry.generation == generation_;
-            const std::size_t place = seen ? entry.place : result.requests;
-            const std::uint32_t before = seen ? out[place].sectors : 0;
-            entry = {line, generation_, static_cast<std::uint32_t>(place)};
-            // Field by field: a copy of a half-written whole would wait for the stores before it.
-            Request& request = out[place];
-            request.line = line;
-            request.id = static_cast<std::uint32_t>(line - layout.id_offset);
-            request.sectors = before | sectors;
-            request.cache = like.cache;
-            request.group = like.group;
-            result.requests += !seen;
-            result.sectors += static_cast<unsigned>(std::popcount(sectors & ~before));
-        };
-        const std::uint64_t in_line = sectors_per_line_ - 1;
-        for (unsigned lane = 0; lane < lanes; ++lane) {
-            const std::uint64_t first_byte = layout.base + std::uint64_t{elements[lane]} * layout.stride;
-            const std::uint64_t first = first_byte >> sector_shift_,
-                                last = (first_byte + layout.extra) >> sector_shift_;
-            const int line_of_sector = line_shift_ - sector_shift_;
-            std::uint64_t line = first >> line_of_sector;
-            if (layout.one_line) {
-                touch(line, sector_range(first & in_line, last & in_line));
-                continue;
-            }
-            const std::uint64_t last_line = last >> line_of_sector;
-            for (std::uint64_t from = first & in_line; line < last_line; ++line, from = 0)
-                touch(line, sector_range(from, in_line));
-            touch(line, sector_range(last_line == first >> line_of_sector ? first & in_line : 0, last & in_line));
-        }
-        return result;
+        const Layout& layout = layouts_[region];
+        Merger merger{table_.data(), table_.size() - 1, table_shift_, generation_, layout.id_offset, like, out, {}};
+        if (layout.aligned)
+            merge_aligned(layout, elements, lanes, merger);
+        else
+            merge_any(layout, elements, lanes, merger);
+        return merger.result;
     }
 
 private:
     struct Layout {
         std::uint64_t base = 0, stride = 0, extra = 0;  ///< extra: element size - 1
-        bool one_line = false;                          ///< no element straddles a line
         std::uint64_t id_offset = 0;
+        bool aligned = false;    ///< a power of two of elements to a line, none straddles
+        int elements_shift = 0;  ///< aligned: log2 of elements per line
+        std::uint64_t first_line = 0;
+        std::vector<std::uint32_t> sectors;  ///< aligned: of each element of a line
     };
     /// Hash table of the lines seen in this access; entries of earlier generations count as empty.
     struct Entry {
@@ -110,9 +78,82 @@ private:
         std::uint32_t generation = 0, place = 0;
     };
 
+    /// The lines of the access so far. Free of branches that depend on whether a line is new: they cannot be predicted.
+    struct Merger {
+        Entry* const table;
+        const std::size_t table_mask;
+        const int table_shift;
+        const std::uint32_t generation;
+        const std::uint64_t id_offset;
+        const Request like;
+        Request* const out;
+        Coalesced result;
+
+        void touch(std::uint64_t line, std::uint32_t sectors) {
+            // Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
+            std::size_t at = (line * 0x9e3779b97f4a7c15ull) >> table_shift;
+            while ((table[at].generation == generation) & (table[at].line != line))
+                [[unlikely]] at = (at + 1) & table_mask;
+            const std::uint64_t seen = table[at].generation == generation;
+            const std::uint64_t place = result.requests ^ ((result.requests ^ table[at].place) & (0 - seen));
+            Request& request = out[place];  // not seen: whatever stood there before
+            const std::uint32_t before = request.sectors & (0u - static_cast<std::uint32_t>(seen));
+            table[at] = {line, generation, static_cast<std::uint32_t>(place)};
+            request.line = line;
+            request.id = static_cast<std::uint32_t>(line - id_offset);
+            request.sectors = before | sectors;
+            request.cache = like.cache;
+            request.group = like.group;
+            result.requests += 1 - seen;
+            result.sectors += static_cast<unsigned>(std::popcount(sectors & ~before));
+        }
+    };
+
+    static void merge_aligned(const Layout& layout, const std::uint32_t* elements, unsigned lanes, Merger& out) {
+        Merger merger = out;  // its own copy, which nothing else can change, stays in registers
+        const std::uint32_t* const sectors = layout.sectors.data();
+        const std::uint64_t in_line = layout.sectors.size() - 1, first_line = layout.first_line;
+        const int shift = layout.elements_shift;
+        for (unsigned lane = 0; lane < lanes; ++lane) {
+            const std::uint64_t element = elements[lane];
+            merger.touch(first_line + (element >> shift), sectors[element & in_line]);
+        }
+        out.result = merger.result;
+    }
+
+    void merge_any(const Layout& layout, const std::uint32_t* elements, unsigned lanes, Merger& merger) const {
+        const std::uint64_t in_line = sectors_per_line_ - 1;
+        const int line_of_sector = line_shift_ - sector_shift_;
+        for (unsigned lane = 0; lane < lanes; ++lane) {
+            const std::uint64_t first_byte = layout.base + elements[lane] * layout.stride;
+            const std::uint64_t first = first_byte >> sector_shift_,
+                                last = (first_byte + layout.extra) >> sector_shift_;
+            const std::uint64_t last_line = last >> line_of_sector;
+            std::uint64_t line = first >> line_of_sector, from = first & in_line;
+            for (; line < last_line; ++line, from = 0) merger.touch(line, sector_range(from, in_line));
+            merger.touch(line, sector_range(from, last & in_line));
+        }
+    }
+
     /// Bits first … last, both included.
     static std::uint32_t sector_range(std::uint64_t first, std::uint64_t last) {
         return static_cast<std::uint32_t>(((std::uint64_t{2} << (last - first)) - 1) << first);
+    }
+
+    Layout make_layout(const traces::Region& r, std::uint64_t id_offset, std::uint32_t line_bytes) const {
+        Layout layout;
+        layout.base = r.base;
+        layout.stride = r.stride;
+        layout.extra = r.element_size - 1;
+        layout.id_offset = id_offset;
+        layout.aligned =
+            r.base % line_bytes == 0 && r.stride && line_bytes % r.stride == 0 && r.element_size <= r.stride;
+        if (!layout.aligned) return layout;
+        layout.first_line = r.base >> line_shift_;
+        layout.elements_shift = line_shift_ - std::countr_zero(r.stride);
+        for (std::uint64_t byte = 0; byte < line_bytes; byte += r.stride)
+            layout.sectors.push_back(sector_range(byte >> sector_shift_, (byte + layout.extra) >> sector_shift_));
+        return layout;
     }
 
     int line_shift_, sector_shift_, table_shift_ = 0;

@@ -20,9 +20,22 @@ class Multiprocessor {
 public:
     /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 first_l1 + s mod l1_per_sm.
     Multiprocessor(unsigned cta_slots, unsigned warps_per_cta, std::uint16_t first_l1, unsigned l1_per_sm)
-        : warps_per_cta_(warps_per_cta), l1_per_sm_(l1_per_sm), first_l1_(first_l1), unfinished_(cta_slots) {}
+        : warps_per_cta_(warps_per_cta),
+          l1_per_sm_(l1_per_sm),
+          first_l1_(first_l1),
+          traces_(std::size_t{cta_slots} * warps_per_cta),
+          unfinished_(cta_slots) {}
 
     bool idle() const { return active_.empty(); }
+
+    /// Hints: this SM's turn comes in a while; it comes soon.
+    void prefetch_warp() const { __builtin_prefetch(active_.data() + turn_); }
+    void prefetch_access() const {
+        if (turn_ >= active_.size()) return;
+        __builtin_prefetch(active_[turn_].next);
+        __builtin_prefetch(active_[turn_].elements);
+        __builtin_prefetch(active_[turn_].elements + 16);
+    }
 
     /// Makes the warps resident, all before their first record; those without an access end here.
     void place(unsigned cta_slot, std::span<const WarpPointer> warps, Hierarchy& memory) {
@@ -37,10 +50,10 @@ public:
             warp.next = trace.records.data();
             warp.end = warp.next + trace.records.size();
             warp.elements = trace.elements.data();
-            warp.trace = warps[i];
             if (!advance_to_access(warp, memory)) continue;
+            traces_[warp.slot] = warps[i];
             if (place < turn_ || (place == turn_ && warp.slot < resume_slot_)) ++turn_;
-            active_.insert(active_.begin() + static_cast<std::ptrdiff_t>(place), std::move(warp));
+            active_.insert(active_.begin() + static_cast<std::ptrdiff_t>(place), warp);
             ++place;
             ++unfinished_[cta_slot];
         }
@@ -53,9 +66,9 @@ public:
         const traces::Record record = *warp.next++;
         memory.access(record, warp.elements, warp.l1);
         warp.elements += record.lanes();
-        // This warp's next turn comes after all others': fetch what it will read then.
-        __builtin_prefetch(warp.elements + 16);
+        // This warp's next turn comes after all others': fetch now what is far away.
         __builtin_prefetch(warp.elements + 32);
+        __builtin_prefetch(warp.elements + 48);
         __builtin_prefetch(warp.next + 8);
         resume_slot_ = warp.slot + 1;
         if (advance_to_access(warp, memory)) {
@@ -63,6 +76,7 @@ public:
             return std::nullopt;
         }
         const unsigned cta_slot = warp.slot / warps_per_cta_;
+        traces_[warp.slot].reset();
         active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
         if (--unfinished_[cta_slot] > 0) return std::nullopt;
         return cta_slot;
@@ -74,7 +88,6 @@ private:
         const std::uint32_t* elements = nullptr;  ///< of `next`
         unsigned slot = 0;
         std::uint16_t l1 = 0;
-        WarpPointer trace;
     };
 
     /// Counts ray starts up to the next access; false if there is none.
@@ -89,6 +102,7 @@ private:
     unsigned warps_per_cta_, l1_per_sm_;
     std::uint16_t first_l1_;
     std::vector<Warp> active_;          ///< unfinished warps by slot
+    std::vector<WarpPointer> traces_;   ///< by slot: keeps the records of an unfinished warp
     std::size_t turn_ = 0;              ///< place in active_ of the next to issue; its size means 0
     unsigned resume_slot_ = 0;          ///< the next to issue has this slot or a later one, or the turn wraps
     std::vector<unsigned> unfinished_;  ///< unfinished warps of each CTA slot

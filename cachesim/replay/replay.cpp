@@ -121,6 +121,8 @@ std::optional<unsigned> Replay::Impl::run_until_slot_is_free() {
             continue;
         }
         idle = 0;
+        if (turn + 6 < sms.size()) sms[turn + 6].prefetch_warp();
+        if (turn + 3 < sms.size()) sms[turn + 3].prefetch_access();
         if (const auto slot = sms[turn].issue(memory)) return slot;
     }
     return std::nullopt;

@@ -41,9 +41,8 @@ TEST_CASE("a replay equals the naive replay for every cache geometry") {
 }
 
 TEST_CASE("a replay equals the naive replay for every line and sector size") {
-    const auto [line, sector] =
-        GENERATE(table<std::uint32_t, std::uint32_t>({{128, 32}, {128, 128}, {64, 32}, {32, 32}, {16, 4}, {128, 4},
-                                                      {256, 8}, {4096, 128}}));
+    const auto [line, sector] = GENERATE(table<std::uint32_t, std::uint32_t>(
+        {{128, 32}, {128, 128}, {64, 32}, {32, 32}, {16, 4}, {128, 4}, {256, 8}, {4096, 128}}));
     Gpu gpu = small_gpu();
     gpu.l1.line_bytes = gpu.l2.line_bytes = line;
     gpu.l1.sector_bytes = gpu.l2.sector_bytes = sector;
@@ -67,9 +66,12 @@ TEST_CASE("a replay equals the naive replay for every placement") {
 
 TEST_CASE("a replay equals the naive replay where objects straddle many lines or overlap") {
     Gpu gpu = small_gpu();
-    check_equal(gpu, {region(ObjectKind::node, 0x1000000, 4096, 4096, 9), region(ObjectKind::triangle, 0x2000000, 300, 300, 90)},
-                12, 10);
-    check_equal(gpu, {region(ObjectKind::node, 0x1000010, 100, 36, 90), region(ObjectKind::texel, 0x1000400, 64, 64, 90)});
+    check_equal(
+        gpu,
+        {region(ObjectKind::node, 0x1000000, 4096, 4096, 9), region(ObjectKind::triangle, 0x2000000, 300, 300, 90)}, 12,
+        10);
+    check_equal(gpu,
+                {region(ObjectKind::node, 0x1000010, 100, 36, 90), region(ObjectKind::texel, 0x1000400, 64, 64, 90)});
     check_equal(gpu, {region(ObjectKind::node, 0x1000000, 80, 0, 5), region(ObjectKind::node, 0, 1, 1, 500)});
     gpu.l1.line_bytes = gpu.l2.line_bytes = 16;
     gpu.l1.sector_bytes = gpu.l2.sector_bytes = 8;
@@ -82,7 +84,8 @@ TEST_CASE("a replay equals the naive replay near 2^48 and up to the last byte of
         Gpu gpu = small_gpu();
         gpu.l2.sets = 3;
         gpu.l1.index = gpu.l2.index = index;
-        check_equal(gpu, {region(ObjectKind::node, (1ull << 48) - 3200, 64, 64, 300), region(ObjectKind::node, top, 64, 64, 300)});
+        check_equal(gpu, {region(ObjectKind::node, (1ull << 48) - 3200, 64, 64, 300),
+                          region(ObjectKind::node, top, 64, 64, 300)});
     }
 }
 

@@ -12,8 +12,9 @@ namespace raycache::tracer::test {
 
 struct Comparison {
     std::uint64_t rays = 0;
-    std::uint64_t ties = 0;          ///< another triangle at the same distance, within 4 ulp
-    std::uint64_t excused = 0;       ///< different, but each justified within rounding
+    std::uint64_t ties = 0;          ///< another triangle at the same distance, within 4 ulp or the error bounds
+    std::uint64_t depths = 0;        ///< the same triangle, t more than 4 ulp apart, each justified within rounding
+    std::uint64_t excused = 0;       ///< another triangle or a miss: an edge, t_min or t_max is within the error bounds
     std::uint64_t ours_wrong = 0;    ///< ours is not justified
     std::uint64_t embree_wrong = 0;  ///< ours is, Embree's is not
     std::string first_wrong;         ///< in words
@@ -21,14 +22,15 @@ struct Comparison {
     void operator+=(const Comparison& other) {
         rays += other.rays;
         ties += other.ties;
+        depths += other.depths;
         excused += other.excused;
         ours_wrong += other.ours_wrong;
         embree_wrong += other.embree_wrong;
         if (first_wrong.empty()) first_wrong = other.first_wrong;
     }
     std::string text() const {
-        return std::to_string(rays) + " rays, " + std::to_string(ties) + " ties, " + std::to_string(excused) +
-               " excused, " + std::to_string(ours_wrong) + " ours wrong, " + std::to_string(embree_wrong) +
+        return std::to_string(rays) + " rays, " + std::to_string(ties) + " ties, " + std::to_string(depths) +
+               " depths, " + std::to_string(excused) + " excused, " + std::to_string(ours_wrong) + " ours wrong, " + std::to_string(embree_wrong) +
                " Embree wrong " + first_wrong;
     }
 };
@@ -55,11 +57,22 @@ inline Comparison compare_closest(const PreparedScene& scene, const EmbreeRefere
             out.ties += ours[i].triangle != theirs.triangle;
             continue;
         }
-        const auto candidates = crossings(scene, rays[i]);
+        // Both on one triangle: only t is in question.
+        const auto candidates = ours[i].triangle == theirs.triangle
+                                    ? std::vector{ExactRay(rays[i]).crossing(scene.scene(), theirs.triangle)}
+                                    : crossings(scene, rays[i]);
         const bool right = justified(candidates, rays[i], ours[i]), other = justified(candidates, rays[i], theirs);
         out.ours_wrong += !right;
         out.embree_wrong += right && !other;
-        out.excused += right && other;
+        const auto inside = [&](const Hit& hit) {
+            return hit.found() && std::any_of(candidates.begin(), candidates.end(), [&](const Crossing& c) {
+                return c.triangle == hit.triangle && c.sure();
+            });
+        };
+        if (right && other)
+            ++(ours[i].triangle == theirs.triangle         ? out.depths
+               : inside(ours[i]) && inside(theirs) ? out.ties
+                                                   : out.excused);
         if (!(right && other) && out.first_wrong.empty()) out.first_wrong = describe(rays[i], ours[i], theirs);
     }
     return out;

@@ -14,7 +14,7 @@ namespace {
 
 /// Shares of rays about which two right answers may differ, as measured with a margin: rays as they come, and rays aimed
 /// at edges and vertices on purpose.
-constexpr double excused_share = 1e-5, excused_aimed_share = 0.02;
+constexpr double excused_share = 1e-5, excused_aimed_share = 0.1;
 
 Box widened(const Box& box) {
     const Vec3 border = (box.upper - box.lower) * 0.1F;
@@ -71,14 +71,15 @@ void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
     const Comparison any = compare_any(prepared, embree, random_segments(box, others, 3));
     const auto at_edges = aimed_rays(prepared.scene(), box, others, 4);
     const Comparison aimed = compare_closest(prepared, embree, at_edges), aimed_any = compare_any(prepared, embree, at_edges);
-    UNSCOPED_INFO("path " << path.text() << "\nshadow " << shadow.text() << "\nrandom " << random.text() << "\nsegments "
+    INFO("path " << path.text() << "\nshadow " << shadow.text() << "\nrandom " << random.text() << "\nsegments "
                           << segments.text() << "\nany " << any.text() << "\naimed " << aimed.text() << "\naimed any "
                           << aimed_any.text());
-    if (std::getenv("H_VERBOSE")) WARN("build " << build << " embree " << build2 << " trace " << clock.lap());
+    if (std::getenv("H_VERBOSE")) WARN("path " << path.text() << "\nshadow " << shadow.text() << "\nrandom " << random.text() << "\nsegments "
+                          << segments.text() << "\nany " << any.text() << "\naimed " << aimed.text() << "\naimed any "
+                          << aimed_any.text() << "\nbuild " << build << " embree " << build2 << " trace " << clock.lap());
     for (const Comparison& result : {path, shadow, random, segments, any}) check(result, excused_share);
     check(aimed, excused_aimed_share);
     check(aimed_any, excused_aimed_share);
-    if (std::getenv("H_VERBOSE")) CHECK(false);
 }
 
 std::string scenes_folder() {

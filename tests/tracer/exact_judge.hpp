@@ -21,11 +21,14 @@
 
 namespace raycache::tracer::test {
 
-/// Across the ray: `lateral_ulps` * 2^-24 * the distance from the origin to the triangle's farthest vertex. Both intersectors
-/// first subtract the origin, so their errors grow with that distance and not with the coordinates.
+/// Bound of the error across the ray: `lateral_ulps` * 2^-24 * the distance from the origin to the triangle's farthest
+/// vertex. Both intersectors first subtract the origin, so their errors grow with that distance and not with the coordinates. Woop's
+/// shear rounds five times per coordinate, sqrt(2) * 5 < 8.
 inline constexpr double lateral_ulps = 8;
-/// Along the ray: `depth_ulps` * 2^-24 * the same distance, plus what a lateral error moves the point of a tilted triangle.
-inline constexpr double depth_ulps = 8;
+/// Bound of the error along the ray: `depth_ulps` * 2^-24 * the same distance, plus what the lateral error does to the
+/// barycentric weights of a tilted triangle: at most `weight_factor` * lateral error / smallest height seen along the
+/// ray, times the triangle's extent along the ray.
+inline constexpr double depth_ulps = 8, weight_factor = 3;
 inline constexpr double ulp = 0x1p-24;
 
 struct Crossing {
@@ -85,7 +88,7 @@ public:
         if (height > 0) {
             z = (weight[0] * p[0][2] + weight[1] * p[1][2] + weight[2] * p[2][2]) / area;
             z = std::clamp(z, z_low, z_high);
-            move *= std::min(1.0, 2 * out.inside_error / height);
+            move *= std::min(1.0, weight_factor * out.inside_error / height);
         }
         out.t = z / length_;
         out.t_error = (depth_ulps * ulp * reach + move) / length_;

@@ -57,8 +57,8 @@ TEST_CASE("a camera without a node name goes by its own or by its number") {
 TEST_CASE("cameras that make no perspective picture are skipped with a warning") {
     GltfBuilder builder;
     SECTION("orthographic") {
-        builder = with_camera({{"type", "orthographic"},
-                               {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}}}});
+        builder = with_camera(
+            {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}}}});
     }
     SECTION("no field of view") { builder = with_camera(perspective(0)); }
     SECTION("negative field of view") { builder = with_camera(perspective(-1)); }

@@ -48,8 +48,8 @@ TEST_CASE("triangle strips and fans face the same way as their first triangle") 
     for (const int mode : {5, 6}) {
         GltfBuilder builder;
         const std::vector<float> round{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
-        builder.place({{"attributes", {{"POSITION", builder.floats(mode == 5 ? square : round, "VEC3")}}},
-                       {"mode", mode}});
+        builder.place(
+            {{"attributes", {{"POSITION", builder.floats(mode == 5 ? square : round, "VEC3")}}}, {"mode", mode}});
         const Scene scene = load(builder).scene;
         REQUIRE(scene.triangle_count() == 2);
         check_near(face_normal(scene, 0), {0, 0, 1});
@@ -95,8 +95,7 @@ TEST_CASE("a mesh placed twice is expanded twice, each with its own matrix") {
 TEST_CASE("a mirroring matrix turns triangles round so that fronts and normals still agree") {
     GltfBuilder builder;
     const int normals = builder.floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
-    const int mesh =
-        builder.mesh({{"attributes", {{"POSITION", builder.triangle_positions()}, {"NORMAL", normals}}}});
+    const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.triangle_positions()}, {"NORMAL", normals}}}});
     builder.node({{"mesh", mesh}, {"scale", {-1, 1, 1}}});
     builder.node({{"mesh", mesh}, {"scale", {1, 1, -2}}});
     const Scene scene = load(builder).scene;
@@ -110,8 +109,7 @@ TEST_CASE("a mirroring matrix turns triangles round so that fronts and normals s
 TEST_CASE("normals follow the inverse transpose and come out unit") {
     GltfBuilder builder;
     const int normals = builder.floats({1, 1, 0, 1, 1, 0, 0, 0, 0}, "VEC3");
-    const int mesh =
-        builder.mesh({{"attributes", {{"POSITION", builder.triangle_positions()}, {"NORMAL", normals}}}});
+    const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.triangle_positions()}, {"NORMAL", normals}}}});
     builder.node({{"mesh", mesh}, {"scale", {2, 1, 1}}});
     const Scene scene = load(builder).scene;
     check_near(scene.normals[0], normalize(Vec3{0.5F, 1, 0}));
@@ -151,8 +149,8 @@ TEST_CASE("interleaved vertices are read with their stride") {
     GltfBuilder builder;
     const std::vector<float> vertices{0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0, 9};
     const int view = builder.view(vertices.data(), 48, 16);
-    const int positions = builder.add(
-        "accessors", {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    const int positions =
+        builder.add("accessors", {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
     builder.place({{"attributes", {{"POSITION", positions}}}});
     CHECK(load(builder).scene.positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
 }
@@ -162,8 +160,8 @@ TEST_CASE("quantised positions need no float") {
     builder.doc["extensionsRequired"] = builder.doc["extensionsUsed"] = {"KHR_mesh_quantization"};
     const std::vector<std::int16_t> plain{0, 0, 0, 0, -7, 0, 0, 0, 0, 9, 0, 0};
     const int view = builder.view(plain.data(), 24, 8);
-    const int positions = builder.add(
-        "accessors", {{"bufferView", view}, {"componentType", 5122}, {"count", 3}, {"type", "VEC3"}});
+    const int positions =
+        builder.add("accessors", {{"bufferView", view}, {"componentType", 5122}, {"count", 3}, {"type", "VEC3"}});
     builder.place({{"attributes", {{"POSITION", positions}}}});
     const auto [scene, warnings] = load(builder);
     CHECK(scene.positions == std::vector<Vec3>{{0, 0, 0}, {-7, 0, 0}, {0, 9, 0}});
@@ -194,8 +192,8 @@ TEST_CASE("triangles that a transform sends to infinity are skipped, their finit
     const std::vector<float> points{0, 0, 0, 1, 0, 0, 0, 1, 0, 3e17F, 0, 0};
     const int normals = builder.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
     const int indices = builder.accessor(std::vector<std::uint16_t>{0, 1, 2, 0, 3, 2}, "SCALAR", 5123);
-    const int mesh = builder.mesh({{"attributes", {{"POSITION", builder.floats(points, "VEC3")}, {"NORMAL", normals}}},
-                                   {"indices", indices}});
+    const int mesh = builder.mesh(
+        {{"attributes", {{"POSITION", builder.floats(points, "VEC3")}, {"NORMAL", normals}}}, {"indices", indices}});
     builder.node({{"mesh", mesh}, {"scale", {-1, -1, -1}}});
     builder.node({{"mesh", mesh}, {"scale", {-10, 10, 10}}});
     const auto [scene, warnings] = load(builder);

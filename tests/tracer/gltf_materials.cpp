@@ -14,9 +14,9 @@ GltfBuilder textured(const json& image, json material = json::object(), int set 
     const int first = builder.floats({0, 0, 1, 0, 0, 1}, "VEC2");
     const int second = builder.accessor(std::vector<std::uint16_t>{0, 0, 65535, 0, 0, 65535}, "VEC2", 5123, true);
     material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}, {"texCoord", set}};
-    builder.place({{"attributes",
-                    {{"POSITION", builder.triangle_positions()}, {"TEXCOORD_0", first}, {"TEXCOORD_1", second}}},
-                   {"material", builder.add("materials", material)}});
+    builder.place(
+        {{"attributes", {{"POSITION", builder.triangle_positions()}, {"TEXCOORD_0", first}, {"TEXCOORD_1", second}}},
+         {"material", builder.add("materials", material)}});
     builder.add("textures", {{"source", 0}});
     builder.add("images", image);
     return builder;
@@ -34,8 +34,8 @@ GltfBuilder with_material(const json& material) {
 }  // namespace
 
 TEST_CASE("the base colour factor, alpha and name of a material are kept") {
-    const auto [scene, warnings] =
-        load(with_material({{"name", "red\npaint"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.25, 0, 0.5}}}}}));
+    const auto [scene, warnings] = load(
+        with_material({{"name", "red\npaint"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 0.25, 0, 0.5}}}}}));
     REQUIRE(scene.materials.size() == 1);
     CHECK(scene.materials[0].name == "red paint");
     CHECK(scene.materials[0].base_color == Vec3{1, 0.25F, 0});
@@ -80,21 +80,20 @@ TEST_CASE("normalised integer texture coordinates of the set a texture asks for 
 
 TEST_CASE("texture coordinates of untextured meshes are not kept") {
     GltfBuilder builder;
-    builder.place({{"attributes",
-                    {{"POSITION", builder.triangle_positions()},
-                     {"TEXCOORD_0", builder.floats({0, 0, 1, 0, 0, 1}, "VEC2")}}}});
+    builder.place(
+        {{"attributes",
+          {{"POSITION", builder.triangle_positions()}, {"TEXCOORD_0", builder.floats({0, 0, 1, 0, 0, 1}, "VEC2")}}}});
     CHECK(load(builder).scene.texcoords.empty());
 }
 
 TEST_CASE("an image that two textures share is decoded once") {
     GltfBuilder builder = textured({{"uri", data_uri(png_rgb)}});
     builder.add("textures", {{"source", 0}});
-    const int other =
-        builder.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}});
-    builder.place({{"attributes",
-                    {{"POSITION", builder.triangle_positions()},
-                     {"TEXCOORD_0", builder.floats({0, 0, 1, 0, 0, 1}, "VEC2")}}},
-                   {"material", other}});
+    const int other = builder.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}});
+    builder.place(
+        {{"attributes",
+          {{"POSITION", builder.triangle_positions()}, {"TEXCOORD_0", builder.floats({0, 0, 1, 0, 0, 1}, "VEC2")}}},
+         {"material", other}});
     const Scene scene = load(builder).scene;
     CHECK(scene.textures.size() == 1);
     CHECK(scene.materials[1].base_color_texture == 0);
@@ -154,9 +153,9 @@ TEST_CASE("MASK keeps its cutoff, BLEND becomes opaque with one warning") {
 }
 
 TEST_CASE("emission is the factor times the strength") {
-    GltfBuilder builder = with_material(
-        {{"emissiveFactor", {1, 0.5, 0}},
-         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8.0}}}}}});
+    GltfBuilder builder =
+        with_material({{"emissiveFactor", {1, 0.5, 0}},
+                       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8.0}}}}}});
     builder.doc["extensionsUsed"] = {"KHR_materials_emissive_strength"};
     const auto [scene, warnings] = load(builder);
     CHECK(scene.materials[0].emission == Vec3{8, 4, 0});
@@ -199,7 +198,7 @@ TEST_CASE("material references and values out of range are errors that name them
     }
     SECTION("image") {
         builder.doc["textures"][0]["source"] = 5;
-        expected = "expected a image below 1, found 5";
+        expected = "expected an image below 1, found 5";
     }
     SECTION("sampler") {
         builder.doc["textures"][0]["sampler"] = 0;

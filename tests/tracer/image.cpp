@@ -83,8 +83,10 @@ TEST_CASE("mutated images decode or are refused with an Error") {
 }
 
 TEST_CASE("only .png, .jpg, .jpeg, .exr and .hdr name an image, in any case") {
-    for (const char* name : {"a.png", "a.PNG", "b/c.jpg", "x.jpeg", "y.exr", "z.hdr"}) CHECK_NOTHROW(check_image_name(name));
-    for (const char* name : {"a", "a.bmp", "a.png.txt", "", ".", "png"}) CHECK_THROWS_AS(check_image_name(name), UsageError);
+    for (const char* name : {"a.png", "a.PNG", "b/c.jpg", "x.jpeg", "y.exr", "z.hdr"})
+        CHECK_NOTHROW(check_image_name(name));
+    for (const char* name : {"a", "a.bmp", "a.png.txt", "", ".", "png"})
+        CHECK_THROWS_AS(check_image_name(name), UsageError);
     CHECK_THROWS_AS(write_image("a.bmp", gradient()), UsageError);
 }
 

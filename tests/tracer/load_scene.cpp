@@ -12,8 +12,7 @@ namespace {
 /// A triangle with two cameras, "near" and "far"; lit by itself if `emissive`, of no area if `flat`.
 GltfBuilder room(bool emissive = false, bool flat = false) {
     GltfBuilder builder;
-    const int corners =
-        flat ? builder.floats({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3") : builder.triangle_positions();
+    const int corners = flat ? builder.floats({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3") : builder.triangle_positions();
     builder.add("materials", {{"emissiveFactor", {emissive ? 1 : 0, 0, 0}}});
     builder.place({{"attributes", {{"POSITION", corners}}}, {"material", 0}});
     const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}};

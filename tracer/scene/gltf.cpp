@@ -91,8 +91,7 @@ Scene load(const GltfReport& report) {
     const GltfDocument document = read_gltf_document(report);
     const GltfNodes nodes = place_gltf_nodes(document, report);
     const std::vector<bool> placed = placed_meshes(document.model, nodes.meshes);
-    GltfMaterials materials =
-        read_gltf_materials(document, used_materials(document.model, placed, report), report);
+    GltfMaterials materials = read_gltf_materials(document, used_materials(document.model, placed, report), report);
 
     Scene scene;
     scene.name = std::filesystem::path(report.path()).filename().string();

@@ -52,8 +52,7 @@ std::uint32_t load_integer(const std::uint8_t* bytes, int component_bytes) {
 void check_extent(std::size_t bytes, std::uint64_t offset, std::uint64_t count, std::uint64_t stride,
                   std::uint64_t element_bytes, const std::string& where, const GltfReport& report) {
     if (count == 0) return;
-    if (offset <= bytes && element_bytes <= bytes - offset &&
-        count - 1 <= (bytes - offset - element_bytes) / stride)
+    if (offset <= bytes && element_bytes <= bytes - offset && count - 1 <= (bytes - offset - element_bytes) / stride)
         return;
     report.fail(where, fmt::format("elements within its buffer view of {} bytes", bytes),
                 fmt::format("{} elements of {} bytes every {} from byte {}", count, element_bytes, stride, offset));

@@ -35,8 +35,8 @@ std::vector<Camera> read_gltf_cameras(const GltfDocument& document, const std::v
     }
     if (orthographic > 0) report.warning(fmt::format("skipped {} orthographic cameras", orthographic));
     if (unusable > 0)
-        report.warning(fmt::format("skipped {} cameras without a direction or with a field of view outside (0, 180)",
-                                   unusable));
+        report.warning(
+            fmt::format("skipped {} cameras without a direction or with a field of view outside (0, 180)", unusable));
     return result;
 }
 
@@ -49,7 +49,8 @@ Camera overview_camera(const Box& box) {
     Camera camera;
     camera.name = "auto";
     // The sphere around the box fits a cone of half the vertical field of view, with a margin.
-    const double distance = 1.1 * std::max(half_diagonal, 1e-3) / std::sin(camera.vertical_fov * std::numbers::pi / 360);
+    const double distance =
+        1.1 * std::max(half_diagonal, 1e-3) / std::sin(camera.vertical_fov * std::numbers::pi / 360);
     const Vec3 towards_eye = normalize(Vec3{0.5F, 0.35F, 1});
     camera.eye = center + towards_eye * static_cast<float>(distance);
     camera.forward = -towards_eye;

@@ -59,20 +59,20 @@ std::vector<std::uint8_t> read_regular_file(const std::string& path, const std::
     if (!fs::exists(status))
         throw Error(one_line(fmt::format("{}: {}: expected a file, found none; check the path", path, what)));
     if (!fs::is_regular_file(status))
-        throw Error(one_line(fmt::format("{}: {}: expected a regular file, found a folder or a device; check the path",
-                                         path, what)));
+        throw Error(one_line(
+            fmt::format("{}: {}: expected a regular file, found a folder or a device; check the path", path, what)));
     const std::uintmax_t size = fs::file_size(path, error);
     if (error)
-        throw Error(one_line(fmt::format("{}: {}: cannot tell its size ({}); check the disk", path, what,
-                                         error.message())));
+        throw Error(
+            one_line(fmt::format("{}: {}: cannot tell its size ({}); check the disk", path, what, error.message())));
     if (size > std::numeric_limits<std::uint32_t>::max())
-        throw Error(one_line(fmt::format("{}: {}: expected less than 4 GiB, found {} bytes; split the scene", path,
-                                         what, size)));
+        throw Error(one_line(
+            fmt::format("{}: {}: expected less than 4 GiB, found {} bytes; split the scene", path, what, size)));
     std::vector<std::uint8_t> bytes(size);
     std::ifstream in(path, std::ios::binary);
     if (!in)
-        throw Error(one_line(fmt::format("{}: {}: cannot open it ({}); check the permissions", path, what,
-                                         std::strerror(errno))));
+        throw Error(one_line(
+            fmt::format("{}: {}: cannot open it ({}); check the permissions", path, what, std::strerror(errno))));
     if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
         throw Error(one_line(fmt::format("{}: {}: expected {} bytes, found {}; the file changed or the disk is faulty",
                                          path, what, size, in.gcount())));

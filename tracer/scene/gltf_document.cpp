@@ -116,7 +116,8 @@ void read_buffers(const json& descriptions, GltfDocument& document, const GltfRe
         const std::string where = fmt::format("buffer {}", i);
         const auto length_at = descriptions[i].find("byteLength");
         if (length_at == descriptions[i].end() || !length_at->is_number_unsigned())
-            report.fail(where, "a byteLength of 1 or more", length_at == descriptions[i].end() ? "none" : length_at->dump());
+            report.fail(where, "a byteLength of 1 or more",
+                        length_at == descriptions[i].end() ? "none" : length_at->dump());
         const auto length = length_at->get<std::uint64_t>();
         std::span<const std::uint8_t> content;
         if (const auto uri = string_member(descriptions[i], "uri")) {
@@ -139,9 +140,9 @@ void list_images(const json& descriptions, GltfDocument& document) {
         GltfImage image;
         image.uri = string_member(descriptions[i], "uri");
         if (const auto view = descriptions[i].find("bufferView"); view != descriptions[i].end() && !image.uri)
-            image.view = view->is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(
-                                                         view->get<std::int64_t>(), -1, 0x7FFFFFFF))
-                                                   : -1;
+            image.view = view->is_number_integer()
+                             ? static_cast<int>(std::clamp<std::int64_t>(view->get<std::int64_t>(), -1, 0x7FFFFFFF))
+                             : -1;
         const auto name = string_member(descriptions[i], "name");
         const bool file = image.uri && !is_data_uri(*image.uri);
         image.name = name ? *name : file ? *image.uri : fmt::format("image {}", i);

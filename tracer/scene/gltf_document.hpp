@@ -15,8 +15,8 @@ namespace raycache::tracer {
 
 /// Where the bytes of one image are.
 struct GltfImage {
-    std::string name;              ///< its name or URI, for messages
-    std::optional<int> view;       ///< in a buffer view,
+    std::string name;                ///< its name or URI, for messages
+    std::optional<int> view;         ///< in a buffer view,
     std::optional<std::string> uri;  ///< or behind a URI
 };
 

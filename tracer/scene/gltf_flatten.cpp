@@ -93,8 +93,8 @@ void check_scene_size(const std::vector<GltfPlacement>& placements,
     triangles = 0;
     for (const GltfPlacement& placement : placements)
         for (const auto& primitive : sources[static_cast<std::size_t>(placement.object)]) add(primitive);
-    const auto machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-                         static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+    const auto machine =
+        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
     if (bytes > machine)
         report.fail("scene", fmt::format("at most the machine's memory, {} MiB", machine >> 20),
                     fmt::format("{} MiB for {} triangles", bytes >> 20, triangles), "export a part of the scene");

@@ -13,16 +13,18 @@ namespace {
 struct Approximations {
     std::size_t blended = 0, emissive_textures = 0, clamped = 0, missing_images = 0;
     void report(const GltfReport& out) const {
-        if (blended > 0) out.warning(fmt::format("{} materials have alphaMode BLEND; they are rendered opaque", blended));
+        if (blended > 0)
+            out.warning(fmt::format("{} materials have alphaMode BLEND; they are rendered opaque", blended));
         if (emissive_textures > 0)
             out.warning(fmt::format("{} materials have an emissive texture; it is ignored and the emissive factor used",
                                     emissive_textures));
         if (clamped > 0)
             out.warning(fmt::format("{} materials have a texture that clamps or mirrors; it is repeated", clamped));
         if (missing_images > 0)
-            out.warning(fmt::format("{} materials have a texture without an image we can read; the base colour factor "
-                                    "alone is used",
-                                    missing_images));
+            out.warning(
+                fmt::format("{} materials have a texture without an image we can read; the base colour factor "
+                            "alone is used",
+                            missing_images));
     }
 };
 
@@ -83,13 +85,13 @@ private:
     void read_texture(const tinygltf::TextureInfo& info, const std::string& where, Material& material) {
         const auto check = [&](int index, std::size_t count, const std::string& kind) {
             if (index < 0 || static_cast<std::size_t>(index) >= count)
-                report_.fail(where, fmt::format("a {} below {}", kind, count), fmt::format("{}", index));
+                report_.fail(where, fmt::format("{} below {}", kind, count), fmt::format("{}", index));
             return static_cast<std::size_t>(index);
         };
-        const tinygltf::Texture& texture = model_.textures[check(info.index, model_.textures.size(), "texture")];
+        const tinygltf::Texture& texture = model_.textures[check(info.index, model_.textures.size(), "a texture")];
         if (info.texCoord < 0) report_.fail(where + " texCoord", "0 or more", fmt::format("{}", info.texCoord));
         if (texture.sampler != -1) {
-            const auto& sampler = model_.samplers[check(texture.sampler, model_.samplers.size(), "sampler")];
+            const auto& sampler = model_.samplers[check(texture.sampler, model_.samplers.size(), "a sampler")];
             approximations.clamped +=
                 sampler.wrapS != TINYGLTF_TEXTURE_WRAP_REPEAT || sampler.wrapT != TINYGLTF_TEXTURE_WRAP_REPEAT;
         }
@@ -97,7 +99,7 @@ private:
             ++approximations.missing_images;
             return;
         }
-        int& slot = slot_of_image_[check(texture.source, images_, "image")];
+        int& slot = slot_of_image_[check(texture.source, images_, "an image")];
         if (slot < 0) {
             slot = static_cast<int>(result.images.size());
             result.images.push_back(texture.source);

@@ -63,8 +63,7 @@ GltfNodes place_gltf_nodes(const GltfDocument& document, const GltfReport& repor
         const auto [index, parent] = pending.back();
         pending.pop_back();
         if (index < 0 || static_cast<std::size_t>(index) >= model.nodes.size())
-            report.fail("node hierarchy", fmt::format("a node below {}", model.nodes.size()),
-                        fmt::format("{}", index));
+            report.fail("node hierarchy", fmt::format("a node below {}", model.nodes.size()), fmt::format("{}", index));
         const auto i = static_cast<std::size_t>(index);
         const std::string where = fmt::format("node {}", index);
         if (reached[i]) report.fail(where, "one parent at most", "a cycle or a second parent");

@@ -43,8 +43,9 @@ void GltfLosses::report(const GltfReport& out) const {
     if (without_positions > 0)
         out.warning(fmt::format("skipped {} primitives without a POSITION attribute", without_positions));
     if (without_texcoords > 0)
-        out.warning(fmt::format("{} textured primitives lack the texture coordinates their texture asks for; (0,0) used",
-                                without_texcoords));
+        out.warning(
+            fmt::format("{} textured primitives lack the texture coordinates their texture asks for; (0,0) used",
+                        without_texcoords));
 }
 
 std::optional<GltfPrimitiveSource> open_gltf_primitive(const GltfDocument& document, int mesh, std::size_t primitive,

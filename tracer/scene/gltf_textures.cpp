@@ -42,8 +42,8 @@ void enforce_budget(std::vector<GltfImageBytes>& images) {
             const ImageSize size = image_size(image.bytes, image.name);
             texels += std::uint64_t{size.width} * size.height;
             if (texels > max_total_texels)
-                throw Error(fmt::format("{}: textures need more than {} texels; reduce them", image.name,
-                                        max_total_texels));
+                throw Error(
+                    fmt::format("{}: textures need more than {} texels; reduce them", image.name, max_total_texels));
         } catch (const Error& e) {
             image.problem = e.what();
             image.bytes = {};
@@ -99,8 +99,9 @@ std::vector<Texture> decode_gltf_textures(const std::vector<GltfImageBytes>& ima
         if (material.base_color_texture >= 0)
             material.base_color_texture = index_of[static_cast<std::size_t>(material.base_color_texture)];
     if (failed > 0)
-        report.warning(fmt::format("{} textures cannot be used and their base colour factor alone is; the first is {} ({})",
-                                   failed, images[first_failed].name, problems[first_failed]));
+        report.warning(
+            fmt::format("{} textures cannot be used and their base colour factor alone is; the first is {} ({})",
+                        failed, images[first_failed].name, problems[first_failed]));
     return result;
 }
 

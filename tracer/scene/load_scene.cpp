@@ -17,7 +17,7 @@ namespace {
 
 // A clear day, for scenes without a light of their own. Constants chosen here, not measured; only the ratio of sun to
 // sky shapes a picture, and none of it changes which rays are traced before the first bounce.
-constexpr Vec3 day_sky{0.6F, 0.75F, 1.0F};            // radiance
+constexpr Vec3 day_sky{0.6F, 0.75F, 1.0F};             // radiance
 constexpr Vec3 day_sun_direction{0.35F, 0.9F, 0.25F};  // to be normalised
 constexpr Vec3 day_sun_irradiance{6.0F, 5.6F, 5.0F};
 
@@ -38,14 +38,15 @@ Scene build(const BuiltinScene& builtin, std::uint64_t detail) {
 Scene load_file(const SceneRequest& request, const Warn& warn) {
     std::error_code error;
     if (!std::filesystem::exists(request.source, error))
-        throw UsageError(one_line(
-            fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
-                        "the file does not exist; check the path",
-                        request.source, builtin_names())));
+        throw UsageError(
+            one_line(fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
+                                 "the file does not exist; check the path",
+                                 request.source, builtin_names())));
     if (request.detail != 0)
-        throw UsageError(one_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
-                                              "one; leave it out",
-                                              request.source, request.detail, builtin_names())));
+        throw UsageError(
+            one_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
+                                 "one; leave it out",
+                                 request.source, request.detail, builtin_names())));
     return load_gltf(request.source, warn);
 }
 
@@ -83,23 +84,25 @@ std::size_t find_camera(const Scene& scene, const std::string& wanted) {
     if (parsed.ec == std::errc() && parsed.ptr == end && index < scene.cameras.size()) return index;
     std::string valid;
     for (const Camera& camera : scene.cameras) valid += (valid.empty() ? "" : ", ") + camera.name;
-    throw UsageError(one_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
-                                          "found no such one; choose one of these",
-                                          wanted, scene.name, valid, scene.cameras.size() - 1)));
+    throw UsageError(
+        one_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
+                             "found no such one; choose one of these",
+                             wanted, scene.name, valid, scene.cameras.size() - 1)));
 }
 
 std::string text(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 void aim(Camera& camera, Vec3 eye, Vec3 look_at) {
     if (!is_finite(eye) || !is_finite(look_at))
-        throw UsageError(fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
-                                     "give three numbers for each",
-                                     text(eye), text(look_at)));
+        throw UsageError(
+            fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
+                        "give three numbers for each",
+                        text(eye), text(look_at)));
     const double x = double{look_at.x} - eye.x, y = double{look_at.y} - eye.y, z = double{look_at.z} - eye.z;
     const double distance = std::hypot(x, y, z);
     if (!(distance > 0))
-        throw UsageError(fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one",
-                                     text(eye)));
+        throw UsageError(
+            fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one", text(eye)));
     camera.name = "eye";
     camera.eye = eye;
     camera.forward = {static_cast<float>(x / distance), static_cast<float>(y / distance),
@@ -121,9 +124,10 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
     if (request.vertical_fov) {
         const float fov = *request.vertical_fov;
         if (!(fov > 0) || !(fov < 180))
-            throw UsageError(fmt::format("camera: expected a vertical field of view above 0 and below 180 degrees, "
-                                         "found {}; choose one within",
-                                         fov));
+            throw UsageError(
+                fmt::format("camera: expected a vertical field of view above 0 and below 180 degrees, "
+                            "found {}; choose one within",
+                            fov));
         scene.cameras.front().vertical_fov = fov;
     }
 }
@@ -132,8 +136,8 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
 
 Scene load_scene(const SceneRequest& request, const Warn& warn) {
     const auto& builtins = builtin_scenes();
-    const auto builtin = std::find_if(builtins.begin(), builtins.end(),
-                                      [&](const BuiltinScene& b) { return b.name == request.source; });
+    const auto builtin =
+        std::find_if(builtins.begin(), builtins.end(), [&](const BuiltinScene& b) { return b.name == request.source; });
     Scene scene = builtin != builtins.end() ? build(*builtin, request.detail) : load_file(request, warn);
     if (builtin == builtins.end()) light_file(scene, request, warn);
     if (request.sky == SceneRequest::Sky::off) {

@@ -47,12 +47,13 @@ public:
     }
 
 private:
-    std::size_t stride() const { return bvh_->stack_entries + 1; }  // a sentinel below the entries
+    /// One entry that is never read, the sentinel, the entries.
+    std::size_t stride() const { return bvh_->stack_entries + 2; }
 
     /// One lane's place in the tree. The hot loop touches little else.
     struct alignas(64) Lane {
         BoxRay box;
-        std::uint32_t* top;     ///< the topmost stack entry; the sentinel `nothing` when the stack is empty
+        std::uint32_t* top;     ///< the topmost stack entry; popping the sentinel `nothing` ends the lane
         std::uint32_t current;  ///< where the lane stands: a node, a leaf, or nothing
     };
 
@@ -64,7 +65,7 @@ private:
         for (std::uint32_t m = mask; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
             lane_[l].box.set(rays[l]);
-            lane_[l].top = &stack_[l * stride()];
+            lane_[l].top = &stack_[l * stride() + 1];
             *lane_[l].top = ChildRef::nothing;
             lane_[l].current = 0;
             sheared_[l].set(rays[l]);
@@ -83,46 +84,37 @@ private:
         return occluded_lanes;
     }
 
-    /// Takes the top entry off the lane's stack: `nothing` when it was empty, which ends the lane.
-    static std::uint32_t pop(Lane& lane) {
-        const std::uint32_t popped = *lane.top;
-        lane.top -= popped != ChildRef::nothing;
-        return popped;
-    }
-
     /// All bits of `lane_bit` if `condition`, else 0; compiles to no branch.
     static std::uint32_t bit_if(bool condition, std::uint32_t lane_bit) {
         return lane_bit & (0U - static_cast<std::uint32_t>(condition));
     }
 
-    /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has no branch.
+    /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has none but for a lane's end.
     void visit_nodes() {
         std::uint32_t* element = recorder_->open(node_mask_, node_region);
         const Bvh2Node* nodes = bvh_->nodes.data();
-        const Bvh2Triangle* triangles = bvh_->triangles.data();
-        std::uint32_t next_nodes = 0, leaves = leaf_mask_;
+        std::uint32_t next_nodes = 0, ended = 0;
         for (std::uint32_t m = node_mask_; m != 0; m &= m - 1) {
-            Lane& lane = lane_[std::countr_zero(m)];
+            const auto l = static_cast<unsigned>(std::countr_zero(m));
+            Lane& lane = lane_[l];
             *element++ = lane.current;
             const Bvh2Node& node = nodes[lane.current];
-            const BoxHits hit = test_boxes(node, lane.box);
+            const BoxHits& hit = test_boxes(node, lane.box);
+            const std::uint64_t near_far = std::rotr(std::bit_cast<std::uint64_t>(node.child), static_cast<int>(hit.near_shift));
             std::uint32_t* top = lane.top;
-            top[1] = node.child[hit.near ^ 1];  // counts only if both are hit
-            top += hit.mask & (hit.mask >> 1);
-            const std::uint32_t popped = *top;
-            const std::uint32_t none = ((hit.mask | (hit.mask >> 1)) & 1U) - 1U;  // all bits if no child is hit
-            const std::uint32_t ref = (popped & none) | (node.child[hit.near] & ~none);
-            lane.top = top - (none & static_cast<std::uint32_t>(popped != ChildRef::nothing));
+            top[1] = static_cast<std::uint32_t>(near_far >> 32);  // counts only if both are hit
+            top += hit.both;
+            const auto near = static_cast<std::uint32_t>(near_far);
+            const std::uint32_t ref = near ^ ((near ^ *top) & hit.none);
+            lane.top = top - (hit.none & 1U);
             lane.current = ref;
-            const std::uint32_t bit = m & (0U - m);
-            next_nodes |= bit_if(!ChildRef::is_leaf(ref), bit);
-            leaves |= bit_if(ref > ChildRef::nothing, bit);
-            const void* next = ChildRef::is_leaf(ref) ? static_cast<const void*>(triangles + ChildRef::first(ref)) : nodes + ref;
-            _mm_prefetch(static_cast<const char*>(next), _MM_HINT_T0);
+            next_nodes |= (~ref >> 31) << l;
+            if (ref == ChildRef::nothing) [[unlikely]]
+                ended |= 1U << l;
         }
         recorder_->close(element);
+        leaf_mask_ |= node_mask_ & ~next_nodes & ~ended;
         node_mask_ = next_nodes;
-        leaf_mask_ = leaves;
     }
 
     template <bool any_hit>
@@ -154,7 +146,7 @@ private:
         for (std::uint32_t m = leaf_mask_; m != 0; m &= m - 1) {
             Lane& lane = lane_[std::countr_zero(m)];
             const std::uint32_t bit = m & (0U - m);
-            lane.current = any_hit && (occluded_lanes & bit) != 0 ? ChildRef::nothing : pop(lane);
+            lane.current = any_hit && (occluded_lanes & bit) != 0 ? ChildRef::nothing : *lane.top--;
             node_mask_ |= bit_if(!ChildRef::is_leaf(lane.current), bit);
             if (lane.current <= ChildRef::nothing) leaf_mask_ &= ~bit;
         }

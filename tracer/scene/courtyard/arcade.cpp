@@ -70,7 +70,7 @@ void pier(MeshBuilder& b) {
     box(b, {-0.34F, spring - 0.2F, -0.34F}, {0.34F, spring - 0.12F, 0.34F});
     box(b, {-0.38F, spring - 0.12F, -0.38F}, {0.38F, spring, 0.38F});
     b.use(Stuff::ochre_plaster);
-    box(b, {-0.28F, spring, -0.28F}, {0.28F, slab_bottom, 0.28F});
+    textured_box(b, {-0.28F, spring, -0.28F}, {0.28F, slab_bottom, 0.28F}, 0.4F);
 }
 
 /// One bay: x = 0 is the axis of its left column. Both faces of the wall above the arch, soffit, mouldings, keystone.

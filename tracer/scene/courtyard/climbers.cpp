@@ -25,7 +25,7 @@ struct Fall {
     float longest;
 };
 constexpr std::array<Fall, 6> falls{
-    {{1, 1, 46, 1.8F}, {1, 2, 34, 1.2F}, {2, 1, 46, 1.7F}, {2, 3, 34, 1.3F}, {3, 1, 34, 1.4F}, {0, 2, 34, 1.4F}}};
+    {{1, 1, 46, 1.8F}, {1, 2, 34, 1.2F}, {2, 0, 46, 1.7F}, {2, 3, 34, 1.3F}, {3, 1, 34, 1.4F}, {0, 2, 34, 1.4F}}};
 
 float length_of(const std::vector<Vec3>& path) {
     float sum = 0;

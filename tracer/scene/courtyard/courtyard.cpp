@@ -71,6 +71,9 @@ std::uint64_t hash(const Scene& scene) {
     hash_bytes(state, scene.positions);
     hash_bytes(state, scene.indices);
     hash_bytes(state, scene.material_of);
+    hash_bytes(state, scene.texcoords);
+    for (const Material& m : scene.materials) XXH3_64bits_update(state, &m.base_color, sizeof m.base_color);
+    for (const Texture& t : scene.textures) hash_bytes(state, t.rgba);
     const std::uint64_t value = XXH3_64bits_digest(state);
     XXH3_freeState(state);
     return value;
@@ -104,10 +107,10 @@ Scene build(std::uint64_t detail) {
     scene.textures = textures();
     scene.cameras = {
         camera("yard", {-9.3F, 1.62F, 8.3F}, {0.3F, 2.35F, -4.0F}, 56),
-        camera("gallery", {4.9F, 6.0F, -7.8F}, {-2.2F, 0.9F, 2.4F}, 54),
-        camera("table", {-2.5F, 1.18F, 5.0F}, {-3.5F, 0.82F, 3.4F}, 50),
+        camera("gallery", {5.0F, 6.1F, -7.45F}, {-1.9F, 0.9F, 2.6F}, 56),
+        camera("table", {-3.75F, 1.22F, 5.2F}, {-3.1F, 0.90F, 3.0F}, 50),
     };
-    scene.sky = {0.95F, 1.20F, 1.60F};
+    scene.sky = {0.95F, 1.24F, 1.80F};
     scene.sun = Sun{normalize({-0.44F, 0.95F, -0.36F}), {10.5F, 9.4F, 7.6F}, 0.00465F};
     scene.hash = hash(scene);
     return scene;

@@ -115,7 +115,7 @@ void climber_leaves(MeshBuilder& b, std::size_t count, int segments) {
     const std::vector<Shoot> shoots = grow_climbers();
     float total = 0;
     for (const Shoot& shoot : shoots) total += shoot.length;
-    const float size = leaf_size(75, count, 0.035F, 0.22F);
+    const float size = leaf_size(70, count, 0.035F, 0.22F);
     Random random(121);
     float sum = 0;
     std::size_t given = 0;
@@ -132,7 +132,8 @@ void climber_leaves(MeshBuilder& b, std::size_t count, int segments) {
             const Vec3 stem = shoot.path[i] + (shoot.path[i + 1] - shoot.path[i]) * f;
             const Vec3 out = shoot.outward[i];
             const bool flower = shoot.flowers && random.below(20) < 13;
-            const Vec3 at = stem + random.jitter(0.09F) + out * random.in(0.0F, 0.05F);
+            const Vec3 aside = random.jitter(0.09F);
+            const Vec3 at = stem + aside + out * random.in(0.0F, 0.05F);
             const Vec3 down{0, shoot.flowers ? -0.3F : -0.8F, 0};
             const Vec3 heading = down + random.jitter(0.8F) + out * 0.5F;
             const Vec3 up = out + random.jitter(0.45F) + Vec3{0, 0.3F, 0};
@@ -174,11 +175,10 @@ Growth potted(PotSite::Plant plant, float s, float size, Random& random) {
     const bool flower = !shrub && y > 0.45F * height && random.below(3) == 0;
     const Vec3 up = Vec3{0, 1, 0} + outwards * 0.5F + random.jitter(0.5F);
     const Stuff green = random.below(3) == 0 ? Stuff::leaf_light : Stuff::leaf_mid;
-    return {place(at, outwards + random.jitter(0.7F), up, size * random.in(0.7F, 1.2F)),
-            flower  ? Stuff::geranium
-            : shrub ? Stuff::leaf_deep
-                    : green,
-            shrub ? oval : heart};
+    const Vec3 heading = outwards + random.jitter(0.7F);
+    const float grown = size * random.in(0.7F, 1.2F);
+    const Stuff stuff = flower ? Stuff::geranium : shrub ? Stuff::leaf_deep : green;
+    return {place(at, heading, up, grown), stuff, shrub ? oval : heart};
 }
 
 void potted_leaves(MeshBuilder& b, std::size_t count, int segments) {
@@ -194,7 +194,7 @@ void potted_leaves(MeshBuilder& b, std::size_t count, int segments) {
         for_bushes -= blades(site);
         bushes += blades(site) == 0 ? 1 : 0;
     }
-    const float size = leaf_size(24, for_bushes, 0.025F, 0.16F);
+    const float size = leaf_size(24, for_bushes, 0.025F, 0.22F);
     Random random(131);
     std::size_t bush = 0;
     for (const PotSite& site : sites) {

@@ -119,7 +119,7 @@ void cloth(MeshBuilder& b, Fineness fine, Stuff stuff) {
         const auto [c, s] = cos_sin(static_cast<double>(u));
         // From the rim, v = 0, up over the edge at v = 0.5 and in to the middle, v = 1.
         if (v > 0.49F) {
-            const float r = 0.535F * (1 - v) / 0.5F;
+            const float r = std::max(0.004F, 0.535F * (1 - v) / 0.5F);  // no needles
             return Vec3{r * c, 0.742F, -r * s};
         }
         const float down = (0.5F - v) / 0.5F;
@@ -152,7 +152,7 @@ void parasol(MeshBuilder& b, Fineness fine, Stuff one, Stuff other) {
             const auto [c, s] = cos_sin((gore + static_cast<double>(u)) / 8);
             const float between = 4 * u * (1 - u);
             const float out = std::min(1.0F, (1 - v) / 0.9F), hang = std::max(0.0F, 0.1F - v) * 1.6F;
-            const float r = 1.55F * out * (1 - 0.06F * between);
+            const float r = std::max(0.015F, 1.55F * out) * (1 - 0.06F * between);
             return Vec3{r * c, 2.95F - 0.62F * out * (0.75F + 0.25F * out) - 0.05F * between * out - hang, -r * s};
         };
         sheet(b, across, std::max(down, 3), at);
@@ -197,8 +197,8 @@ void furniture(MeshBuilder& b, Fineness fine) {
         for (int i = 0; i < site.chairs; ++i) {
             const float quarter = static_cast<float>(i) * 0.25F + random.in(-0.02F, 0.02F);
             const float away = random.in(0.56F, 0.74F);
-            const Transform seat = place * turned(quarter) * moved({random.in(-0.06F, 0.06F), 0, -away}) *
-                                   turned(random.in(-0.04F, 0.04F));
+            const float aside = random.in(-0.06F, 0.06F), askew = random.in(-0.04F, 0.04F);
+            const Transform seat = place * turned(quarter) * moved({aside, 0, -away}) * turned(askew);
             if (site.kind == Kind::round_cloth)
                 b.add(iron, seat);
             else

@@ -191,7 +191,7 @@ void floors_and_ceilings(MeshBuilder& b, const Side& side, Fineness fine) {
 void bell_tower(MeshBuilder& b, Fineness fine) {
     const float h = 1.9F, base = 12.2F, top = 15.4F;
     b.use(Stuff::ochre_plaster);
-    box(b, {-h, 0, -h}, {h, base, h});
+    textured_box(b, {-h, 0, -h}, {h, base, h}, texture_scale);
     b.use(Stuff::pale_stone);
     box(b, {-h - 0.2F, base, -h - 0.2F}, {h + 0.2F, base + 0.3F, h + 0.2F});
     b.use(Stuff::white_plaster);
@@ -201,7 +201,7 @@ void bell_tower(MeshBuilder& b, Fineness fine) {
         const Transform outer = b.frame();
         b.frame(outer * turned(0.25 * face));
         for (const float x : {-h, r}) {
-            box(b, {x, base + 0.3F, h - 0.5F}, {x + h - r, spring_y, h});
+            textured_box(b, {x, base + 0.3F, h - 0.5F}, {x + h - r, spring_y, h}, texture_scale);
         }
         for (const bool back : {false, true}) {
             sheet(
@@ -217,10 +217,12 @@ void bell_tower(MeshBuilder& b, Fineness fine) {
                 flat(b, {l, spring_y, z}, {right, spring_y, z}, {right, top, z}, {l, top, z}, texture_scale);
             }
         }
-        sheet(b, segments, 1, [&](float u, float v) {
-            const auto [c, s] = cos_sin(0.5 * static_cast<double>(u));
-            return Vec3{-r * c, spring_y + r * s, h - 0.5F * v};
-        });
+        sheet(b, segments, 1,
+              [&](float u, float v) {
+                  const auto [c, s] = cos_sin(0.5 * static_cast<double>(u));
+                  return Vec3{-r * c, spring_y + r * s, h - 0.5F * v};
+              },
+              {1.0F, 0.2F});
         b.frame(outer);
     }
     b.use(Stuff::pale_stone);

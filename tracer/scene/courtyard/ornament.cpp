@@ -34,11 +34,13 @@ void lantern(MeshBuilder& b, Fineness fine) {
     lathe(b, curve(roof, fine.of(2, 1)), fine.of(12, 6));
     constexpr std::array<Turning, 4> foot{{{0, -0.62F}, {0.05F, -0.60F}, {0.11F, -0.565F, true}, {0, -0.56F}}};
     lathe(b, curve(foot, fine.of(2, 1)), fine.of(12, 6));
-    if (coarse) return;
     b.use(Stuff::wax);
     constexpr std::array<Turning, 4> candle{
         {{0.03F, -0.56F, true}, {0.03F, -0.40F, true}, {0.024F, -0.395F}, {0, -0.40F}}};
-    lathe(b, candle, fine.of(10, 5));
+    if (coarse)
+        lathe(b, every_other(candle), 3);
+    else
+        lathe(b, candle, fine.of(10, 5));
 }
 
 void chain(MeshBuilder& b, Fineness fine, float length) {

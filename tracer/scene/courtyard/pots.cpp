@@ -17,7 +17,8 @@ std::vector<PotSite> pot_sites() {
             sites.push_back({side.frame.point(at), size, kind, stuff, plant});
         };
         for (int i = 1; i < side.bays; ++i) {  // beside the columns, on the yard's side
-            const float x = side.column(i), shift = random.in(0.42F, 0.58F) * (random.below(2) == 0 ? 1.F : -1.F);
+            const float x = side.column(i), off = random.in(0.42F, 0.58F);
+            const float shift = random.below(2) == 0 ? off : -off;
             const std::uint32_t which = random.below(4);
             put({x + shift, 0, -0.98F}, random.in(0.17F, 0.24F), Kind::classic,
                 which == 0   ? Plant::agave
@@ -74,7 +75,7 @@ void pots(MeshBuilder& b, Fineness fine) {
         MeshBuilder part = b.part();
         const auto outside = profile.first(profile.size() - 1);
         if (fine.value < 0.35)
-            lathe(part, every_other(outside), 6);
+            lathe(part, every_other(outside.subspan(1)), 6);
         else
             lathe(part, curve(outside, fine.of(3, 1)), fine.of(22, 7));
         return part;

@@ -8,13 +8,14 @@
 
 namespace raycache::tracer::courtyard {
 
+/// One number per full expression, or in braces: else the compiler chooses which comes first.
 /// PCG32 (O'Neill 2014, XSH-RR 64/32). Every part of the courtyard owns one with its own stream, so that more detail in
 /// one part moves nothing in another.
 class Random {
 public:
-    explicit Random(std::uint64_t stream) : increment_(2 * stream + 1) {
+    explicit Random(std::uint64_t stream, std::uint64_t seed = 0x5EED0FC0A57A2DULL) : increment_(2 * stream + 1) {
         bits();
-        state_ += 0x5EED0FC0A57A2DULL;
+        state_ += seed;
         bits();
     }
 

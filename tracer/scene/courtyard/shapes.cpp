@@ -27,6 +27,15 @@ void box(MeshBuilder& b, Vec3 lower, Vec3 upper) {
     for (const auto& f : faces) b.quad(first + f[0], first + f[1], first + f[2], first + f[3]);
 }
 
+void textured_box(MeshBuilder& b, Vec3 l, Vec3 u, float uv) {
+    flat(b, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}, uv);
+    flat(b, {u.x, l.y, l.z}, {l.x, l.y, l.z}, {l.x, u.y, l.z}, {u.x, u.y, l.z}, uv);
+    flat(b, {u.x, l.y, u.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {u.x, u.y, u.z}, uv);
+    flat(b, {l.x, l.y, l.z}, {l.x, l.y, u.z}, {l.x, u.y, u.z}, {l.x, u.y, l.z}, uv);
+    flat(b, {l.x, u.y, u.z}, {u.x, u.y, u.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, uv);
+    flat(b, {l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, l.y, u.z}, {l.x, l.y, u.z}, uv);
+}
+
 void bar(MeshBuilder& b, Vec3 from, Vec3 to, Vec3 up, float width, float height, int rounding, float radius) {
     const Vec3 along = normalize(to - from), side = normalize(cross(along, up)), top = cross(side, along);
     const auto first = static_cast<std::uint32_t>(b.vertices());
@@ -173,9 +182,10 @@ void disc(MeshBuilder& b, Vec3 centre, float radius, int sides) {
 void tube(MeshBuilder& b, std::span<const Vec3> path, std::span<const float> radii, int sides) {
     const std::size_t points = path.size();
     const auto n = static_cast<std::uint32_t>(sides);
-    if (b.counting()) return b.count(points * n + 2, 2 * n * (points - 1) + 2 * n);
+    if (b.counting()) return b.count((points + 2) * n, 2 * n * (points - 1) + 2 * (n - 2));
     const auto first = static_cast<std::uint32_t>(b.vertices());
     Vec3 side;
+    std::vector<Vec3> rim;  // of both ends
     for (std::size_t i = 0; i < points; ++i) {
         const Vec3 along = normalize(path[std::min(i + 1, points - 1)] - path[i > 0 ? i - 1 : 0]);
         if (i == 0) side = cross(along, std::abs(along.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
@@ -184,7 +194,9 @@ void tube(MeshBuilder& b, std::span<const Vec3> path, std::span<const float> rad
         for (std::uint32_t k = 0; k < n; ++k) {
             const auto [c, s] = cos_sin(static_cast<double>(k) / n);
             const Vec3 normal = side * c + other * s;
-            b.vertex(path[i] + normal * radii[i], normal);
+            const Vec3 p = path[i] + normal * radii[i];
+            b.vertex(p, normal);
+            if (i == 0 || i + 1 == points) rim.push_back(p);
         }
     }
     const auto last = first + static_cast<std::uint32_t>(points - 1) * n;
@@ -194,12 +206,15 @@ void tube(MeshBuilder& b, std::span<const Vec3> path, std::span<const float> rad
             b.quad(row + k, row + k1, row + n + k1, row + n + k);
         }
     }
-    const auto start = b.vertex(path[0], normalize(path[0] - path[1]));
-    const auto end = b.vertex(path[points - 1], normalize(path[points - 1] - path[points - 2]));
-    for (std::uint32_t k = 0; k < n; ++k) {
-        const std::uint32_t k1 = (k + 1) % n;
-        b.triangle(start, first + k1, first + k);
-        b.triangle(end, last + k, last + k1);
+    for (const bool far : {false, true}) {  // flat ends, with vertices of their own
+        const auto cap = static_cast<std::uint32_t>(b.vertices());
+        for (std::uint32_t k = 0; k < n; ++k) b.vertex(rim[far ? n + k : k]);
+        for (std::uint32_t k = 1; k + 1 < n; ++k) {
+            if (far)
+                b.triangle(cap, cap + k, cap + k + 1);
+            else
+                b.triangle(cap, cap + k + 1, cap + k);
+        }
     }
 }
 

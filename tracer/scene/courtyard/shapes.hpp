@@ -26,6 +26,9 @@ void flat(MeshBuilder&, Vec3 a, Vec3 b, Vec3 c, Vec3 d, float uv_per_metre = 0);
 /// An axis-aligned box: 12 triangles.
 void box(MeshBuilder&, Vec3 lower, Vec3 upper);
 
+/// The same with a texture on every face: 24 vertices.
+void textured_box(MeshBuilder&, Vec3 lower, Vec3 upper, float uv_per_metre);
+
 /// A straight bar of rectangular section whose long edges are rounded in `rounding` steps (0: sharp, 12 triangles).
 /// `up` sets the direction of `height`.
 void bar(MeshBuilder&, Vec3 from, Vec3 to, Vec3 up, float width, float height, int rounding, float radius = 0.008F);

@@ -140,7 +140,8 @@ void tableware(MeshBuilder& b, Fineness fine) {
             const double slant = random.in(-0.02F, 0.02F), other = random.in(-0.02F, 0.02F);
             if (fine.value > 0.3) b.add(prongs, cover * moved({0.17F, 0, -0.33F}) * turned(slant), Stuff::brass);
             if (fine.value > 0.3) b.add(blade, cover * moved({-0.17F, 0, -0.33F}) * turned(other), Stuff::brass);
-            const Transform drink = cover * moved({-0.16F, 0, random.in(-0.2F, -0.14F)}) * turned(random.unit());
+            const float away = random.in(-0.2F, -0.14F), handle = random.unit();
+            const Transform drink = cover * moved({-0.16F, 0, away}) * turned(handle);
             b.add(random.below(2) == 0 ? mug : glass, drink);
         }
         if (number % 3 != 1) b.add(fruit, top * moved({0.02F, 0, 0.03F}));

@@ -109,7 +109,11 @@ void tree_wood(MeshBuilder& b, Fineness fine) {
                                            {r - 0.22F, 0.2F, true}}};
         b.frame(moved(site.at));
         b.use(Stuff::white_plaster);
-        lathe(b, std::span(wall).first(2), fine.of(30, 10));
+        const auto at = [&](float u, float v) {
+            const auto [c, s] = cos_sin(static_cast<double>(u));
+            return Vec3{r * c, -0.05F + 0.42F * v, -r * s};
+        };
+        sheet(b, fine.of(30, 10), 1, at, {2.5F * r, 0.17F});
         b.use(Stuff::pale_stone);
         lathe(b, curve(std::span(wall).subspan(1), fine.of(2, 1)), fine.of(30, 10));
         b.use(Stuff::soil);

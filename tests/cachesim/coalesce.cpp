@@ -1,0 +1,117 @@
+#include "cachesim/frontend/coalesce.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "random_launch.hpp"
+#include "traces/error.hpp"
+
+using namespace raycache;
+using namespace raycache::cachesim;
+using namespace raycache::cachesim::test;
+using traces::ObjectKind;
+
+namespace {
+
+struct Touched {
+    std::uint64_t line;
+    std::uint32_t sectors;
+    bool operator==(const Touched&) const = default;
+    auto operator<=>(const Touched&) const = default;
+};
+
+std::vector<Touched> coalesce(const traces::Region& r, const std::vector<std::uint32_t>& elements,
+                              std::uint32_t line = 128, std::uint32_t sector = 32) {
+    const LineIds ids({r}, line);
+    Coalescer coalescer({r}, ids, line, sector);
+    std::vector<Request> out(coalescer.max_requests());
+    const auto made = coalescer(0, elements.data(), static_cast<unsigned>(elements.size()), {}, out.data());
+    std::vector<Touched> touched;
+    unsigned sectors = 0;
+    for (std::size_t i = 0; i < made.requests; ++i) {
+        touched.push_back({out[i].line, out[i].sectors});
+        sectors += static_cast<unsigned>(std::popcount(out[i].sectors));
+    }
+    CHECK(sectors == made.sectors);
+    return touched;
+}
+
+const traces::Region nodes = region(ObjectKind::node, 0x200000, 64, 64, 1000);          // line 0x4000
+const traces::Region triangles = region(ObjectKind::triangle, 0x200000, 48, 48, 1000);  // line 0x4000
+
+}  // namespace
+
+TEST_CASE("lanes at the same node share its two sectors") {
+    CHECK(coalesce(nodes, {4, 4, 4}) == std::vector<Touched>{{0x4002, 0b0011}});
+}
+
+TEST_CASE("the two nodes of a line make one look-up of four sectors") {
+    CHECK(coalesce(nodes, {5, 4}) == std::vector<Touched>{{0x4002, 0b1111}});
+}
+
+TEST_CASE("lines come in the order in which lanes first touch them") {
+    CHECK(coalesce(nodes, {9, 0, 8, 3, 1}) ==
+          std::vector<Touched>{{0x4004, 0b1111}, {0x4000, 0b1111}, {0x4001, 0b1100}});
+}
+
+TEST_CASE("a triangle that straddles a line makes two look-ups") {
+    // Bytes 96 … 143: the last sector of line 0, the first of line 1.
+    CHECK(coalesce(triangles, {2}) == std::vector<Touched>{{0x4000, 0b1000}, {0x4001, 0b0001}});
+    CHECK(coalesce(triangles, {2, 0}) == std::vector<Touched>{{0x4000, 0b1011}, {0x4001, 0b0001}});
+}
+
+TEST_CASE("an object longer than a line touches every line in between") {
+    const auto r = region(ObjectKind::texel, 96, 4096, 4096, 2);
+    const auto touched = coalesce(r, {0}, 64, 32);
+    REQUIRE(touched.size() == 65);
+    CHECK(touched.front() == Touched{1, 0b10});
+    CHECK(touched[1] == Touched{2, 0b11});
+    CHECK(touched.back() == Touched{65, 0b01});
+}
+
+TEST_CASE("a line of 32 sectors has 32 bits") {
+    CHECK(coalesce(region(ObjectKind::texel, 0, 128, 128, 1), {0}, 128, 4) == std::vector<Touched>{{0, 0xffffffffu}});
+}
+
+TEST_CASE("32 lanes in 32 lines make 32 look-ups") {
+    std::vector<std::uint32_t> elements;
+    for (std::uint32_t lane = 0; lane < 32; ++lane) elements.push_back(lane * 2);
+    CHECK(coalesce(nodes, elements).size() == 32);
+}
+
+TEST_CASE("permuting the lanes changes neither lines nor sectors") {
+    std::mt19937 random(1);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<std::uint32_t> elements(1 + random() % 32);
+        for (auto& e : elements) e = random() % 40;
+        auto before = coalesce(triangles, elements);
+        std::shuffle(elements.begin(), elements.end(), random);
+        auto after = coalesce(triangles, elements);
+        std::sort(before.begin(), before.end());
+        std::sort(after.begin(), after.end());
+        CHECK(before == after);
+    }
+}
+
+TEST_CASE("the last byte of the address space is an address like any other") {
+    const auto r = region(ObjectKind::node, ~std::uint64_t{0} - 127, 64, 64, 2);
+    CHECK(coalesce(r, {1, 0}) == std::vector<Touched>{{~std::uint64_t{0} / 128, 0b1111}});
+}
+
+TEST_CASE("line ids are dense and regions that share a line share its id") {
+    const std::vector<traces::Region> regions{region(ObjectKind::texel, 0x7f0000000000, 64, 64, 4),
+                                              region(ObjectKind::node, 0x1000, 64, 64, 4),
+                                              region(ObjectKind::triangle, 0x1040, 64, 64, 5)};
+    const LineIds ids(regions, 128);
+    CHECK(ids.count() == 5);
+    CHECK(ids.offset(1) == 0x1000 / 128);
+    CHECK(ids.offset(2) == ids.offset(1));
+    CHECK(0x7f0000000000 / 128 - ids.offset(0) == 3);
+}
+
+TEST_CASE("impossible regions are refused") {
+    CHECK_THROWS_AS(LineIds({region(ObjectKind::node, 0, 0, 64, 1)}, 128), Error);
+    CHECK_THROWS_AS(LineIds({region(ObjectKind::node, ~std::uint64_t{0} - 63, 64, 64, 2)}, 128), Error);
+    CHECK_NOTHROW(LineIds({region(ObjectKind::node, ~std::uint64_t{0} - 63, 64, 64, 1)}, 128));
+}

@@ -1,0 +1,149 @@
+#include "cachesim/gpus/gpu.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "cachesim/gpus/gpu_file.hpp"
+#include "cachesim/gpus/limits.hpp"
+#include "cachesim/gpus/presets.hpp"
+#include "traces/error.hpp"
+
+using namespace raycache;
+using namespace raycache::cachesim;
+
+namespace {
+
+const std::string good = R"(name = "tiny"
+description = "for tests"
+sms = 2
+warps_per_sm = 4
+warps_per_cta = 2
+l1_per_sm = 1
+[l1]
+sets = 4
+ways = 3
+line_bytes = 128
+sector_bytes = 32
+index = "modulo"
+policy = "lru"
+[l2]
+sets = 5
+ways = { value = 6, source = "made up" }
+line_bytes = 128
+sector_bytes = 32
+index = "xor_fold"
+policy = "lru"
+)";
+
+/// The message for `good` with `from` replaced by `to`; must be one line.
+std::string error(const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    try {
+        parse_gpu(text, "f.toml");
+    } catch (const UsageError&) {
+        FAIL("a bad file is no bad command line");
+    } catch (const Error& e) {
+        const std::string message = e.what();
+        CHECK(message.find('\n') == std::string::npos);
+        return message;
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("a GPU file gives every value") {
+    const Gpu gpu = parse_gpu(good, "f.toml");
+    CHECK(gpu.name == "tiny");
+    CHECK(gpu.description == "for tests");
+    CHECK(gpu.sms == 2);
+    CHECK(gpu.warps_per_sm == 4);
+    CHECK(gpu.warps_per_cta == 2);
+    CHECK(gpu.l1_per_sm == 1);
+    CHECK(gpu.l1.sets == 4);
+    CHECK(gpu.l1.ways == 3);
+    CHECK(gpu.l1.index == SetIndex::modulo);
+    CHECK(gpu.l2.ways == 6);
+    CHECK(gpu.l2.index == SetIndex::xor_fold);
+    CHECK(gpu.l2.bytes() == 5 * 6 * 128);
+}
+
+TEST_CASE("every preset loads under its file name, with a source beside every number") {
+    REQUIRE(gpu_presets().size() == preset_texts().size());
+    for (const PresetText& preset : preset_texts()) {
+        CAPTURE(preset.name);
+        CHECK(load_gpu(preset.name).name == preset.name);
+        CHECK(values_without_source(preset.toml, preset.name).empty());
+        const std::string path = RAYCACHE_SOURCE_DIR "/cachesim/gpus/" + preset.name + ".toml";
+        CHECK(load_gpu(path).l2.bytes() == load_gpu(preset.name).l2.bytes());
+    }
+    CHECK(load_gpu("gtx-980-ti").l1.bytes() == 24 * 1024);
+    CHECK(load_gpu("gtx-980-ti").l2.bytes() == 3 * 1024 * 1024);
+    CHECK(load_gpu("h100").l1.bytes() == 256 * 1024);
+    CHECK(load_gpu("h100").l2.bytes() == 50 * 1024 * 1024);
+}
+
+TEST_CASE("an unknown preset is bad use and lists the valid names") {
+    CHECK_THROWS_AS(load_gpu("gtx-970"), UsageError);
+    CHECK_THROWS_WITH(load_gpu("gtx-970"), Catch::Contains("gtx-980-ti, h100") && Catch::Contains("\"gtx-970\""));
+    CHECK_THROWS_AS(load_gpu(""), UsageError);
+}
+
+TEST_CASE("a file that cannot be read is named") {
+    CHECK_THROWS_WITH(load_gpu("/nowhere/x.toml"), Catch::StartsWith("/nowhere/x.toml: expected"));
+    CHECK_THROWS_WITH(load_gpu("/tmp/"), Catch::Contains("folder"));
+    CHECK_THROWS_WITH(load_gpu("/dev/zero"), Catch::Contains("longer"));
+}
+
+TEST_CASE("errors of a GPU file name file, line and key") {
+    using Catch::StartsWith;
+    CHECK_THAT(error("sms = 2\n", "sms = 0\n"), StartsWith("f.toml:3: sms: expected a positive"));
+    CHECK_THAT(error("sms = 2\n", "sms = -2\n"), StartsWith("f.toml:3: sms: expected a positive"));
+    CHECK_THAT(error("sms = 2\n", "sms = 2.5\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found floating"));
+    CHECK_THAT(error("sms = 2\n", "sms = \"2\"\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found string"));
+    CHECK_THAT(error("sms = 2\n", "sms = nan\n"), StartsWith("f.toml:3: sms: "));
+    CHECK_THAT(error("sms = 2\n", "sms = 4294967298\n"), StartsWith("f.toml:3: sms: "));
+    CHECK_THAT(error("sms = 2\n", "sms = 5000\n"), StartsWith("f.toml:3: sms: expected 1 to 4096"));
+    CHECK_THAT(error("sms = 2\n", "sms = 99999999999999999999\n"), StartsWith("f.toml:3: expected TOML"));
+    CHECK_THAT(error("sms = 2\n", "sms = 2 2\n"), StartsWith("f.toml:3: expected TOML"));
+    CHECK_THAT(error("sms = 2\n", "sms = \n"), StartsWith("f.toml:3: expected TOML"));
+    CHECK_THAT(error("sms = 2\n", ""), StartsWith("f.toml:1: sms: expected this key, found none"));
+    CHECK_THAT(error("ways = 3\n", ""), StartsWith("f.toml:7: l1.ways: expected this key, found none"));
+    CHECK_THAT(error("sms = 2\n", "sms = 2\nsmz = 2\n"), StartsWith("f.toml:4: smz: expected one of the keys"));
+    CHECK_THAT(error("ways = 3\n", "ways = 3\nway = 3\n"), StartsWith("f.toml:10: l1.way: expected one of the keys"));
+    CHECK_THAT(error("[l1]", "[[l1]]"), StartsWith("f.toml:7: l1: expected a table, found array"));
+    CHECK_THAT(error("source = \"made up\"", "sauce = \"made up\""), StartsWith("f.toml:16: l2.ways.sauce: "));
+    CHECK_THAT(error(", source = \"made up\"", ""), StartsWith("f.toml:16: l2.ways.source: expected this key"));
+    CHECK_THAT(error("\"made up\"", "7"), StartsWith("f.toml:16: l2.ways.source: expected a string"));
+    CHECK_THAT(error("\"tiny\"", "\"\""), StartsWith("f.toml:1: name: expected a text"));
+    CHECK_THAT(error("\"modulo\"", "\"mod\""), StartsWith("f.toml:12: l1.index: expected \"modulo\" or"));
+    CHECK_THAT(error("\"lru\"", "\"mru\""), StartsWith("f.toml:13: l1.policy: expected one of: lru"));
+}
+
+TEST_CASE("impossible caches are refused with the line of the value at fault") {
+    using Catch::StartsWith;
+    CHECK_THAT(error("line_bytes = 128", "line_bytes = 100"),
+               StartsWith("f.toml:10: l1.line_bytes: expected a multiple"));
+    CHECK_THAT(error("line_bytes = 128", "line_bytes = 96"), StartsWith("f.toml:10: l1.line_bytes: expected a power"));
+    CHECK_THAT(error("sector_bytes = 32", "sector_bytes = 256"),
+               StartsWith("f.toml:11: l1.sector_bytes: expected at most the line's 128"));
+    CHECK_THAT(error("line_bytes = 128\nsector_bytes = 32", "line_bytes = 2048\nsector_bytes = 32"),
+               StartsWith("f.toml:11: l1.sector_bytes: expected at most 32 sectors"));
+    CHECK_THAT(error("sets = 4", "sets = 9223372036854775807"), StartsWith("f.toml:8: l1.sets: "));
+    CHECK_THAT(error("sets = 4", "sets = 1099511627776"), Catch::Contains("2^40 bytes"));
+    CHECK_THAT(error("sets = 4", "sets = 100000000"), Catch::Contains("2^26 lines"));
+    CHECK_THAT(error("[l2]\nsets = 5\nways = { value = 6, source = \"made up\" }\nline_bytes = 128",
+                     "[l2]\nsets = 5\nways = 6\nline_bytes = 64"),
+               StartsWith("f.toml:17: l2.line_bytes: expected the line size of L1"));
+}
+
+TEST_CASE("a user's GPU file is read from a path") {
+    const auto path = std::filesystem::temp_directory_path() / "raycache-test-gpu.toml";
+    std::ofstream(path) << good;
+    CHECK(load_gpu(path.string()).name == "tiny");
+    std::filesystem::remove(path);
+}

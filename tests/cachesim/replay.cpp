@@ -1,0 +1,183 @@
+#include "cachesim/replay/replay.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "oracle.hpp"
+#include "random_launch.hpp"
+#include "traces/error.hpp"
+
+using namespace raycache;
+using namespace raycache::cachesim;
+using namespace raycache::cachesim::test;
+using traces::ObjectKind;
+
+namespace {
+
+const std::vector<traces::Region> nodes{region(ObjectKind::node, 0x200000, 64, 64, 1000)};
+
+/// One warp; each inner list is one access, lanes from 0 up.
+std::shared_ptr<traces::WarpTrace> warp(const std::vector<std::vector<std::uint32_t>>& accesses) {
+    auto w = std::make_shared<traces::WarpTrace>();
+    for (const auto& elements : accesses) {
+        traces::Record record;
+        record.mask = static_cast<std::uint32_t>((std::uint64_t{1} << elements.size()) - 1);
+        w->records.push_back(record);
+        w->elements.insert(w->elements.end(), elements.begin(), elements.end());
+    }
+    return w;
+}
+
+Gpu one_warp_at_a_time() {
+    Gpu gpu = small_gpu();
+    gpu.sms = 1;
+    gpu.warps_per_sm = gpu.warps_per_cta = 1;
+    return gpu;
+}
+
+}  // namespace
+
+TEST_CASE("a tiny launch counts as computed by hand") {
+    Gpu gpu = one_warp_at_a_time();
+    gpu.l1.sets = gpu.l1.ways = 1;
+    gpu.l2.sets = 1;
+    gpu.l2.ways = 2;
+    // Line 0 sectors 0, 1: DRAM. Line 0 sectors 2, 3: DRAM. Node 0 again: L1. Line 1: DRAM, evicts line 0 from L1.
+    // Line 0, all four sectors: L1 miss, L2 hit.
+    auto w = warp({{0}, {1}, {0}, {2}, {0, 1}});
+    traces::Record start;
+    start.mask = 0xf;
+    start.region = traces::ray_start;
+    w->records.insert(w->records.begin(), start);
+    const LaunchStatistics s = replay(gpu, {nodes, {w}}, 3);
+    CHECK(s.sample == 3);
+    REQUIRE(s.groups.size() == 1);
+    CHECK(s.groups[0].rays == 4);
+    Counters expected;
+    expected.steps = expected.lane_accesses = 6;
+    expected.warp_accesses = 5;
+    expected.sectors = 12;
+    expected.l1_hits = 2;
+    expected.l2_sectors = 10;
+    expected.l2_hits = 4;
+    expected.dram_sectors = 6;
+    CHECK(s.groups[0].by_kind[0] == expected);
+    expected.rays = 4;
+    CHECK(s.all() == expected);
+}
+
+TEST_CASE("warps of an SM take turns") {
+    // With one line of L1, A A B B would hit twice; taking turns, A B A B never does.
+    Gpu gpu = one_warp_at_a_time();
+    gpu.warps_per_sm = gpu.warps_per_cta = 2;
+    gpu.l1.sets = gpu.l1.ways = 1;
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 0);
+    gpu.warps_per_sm = gpu.warps_per_cta = 1;
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 4);
+}
+
+TEST_CASE("warp slots are dealt out among the L1s of an SM") {
+    Gpu gpu = one_warp_at_a_time();
+    gpu.warps_per_sm = gpu.warps_per_cta = 2;
+    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().l1_hits == 2);
+    gpu.l1_per_sm = 2;
+    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().l1_hits == 0);
+}
+
+TEST_CASE("a later CTA goes to the SM that frees first") {
+    // CTA 0 (SM 0) is long, CTA 1 (SM 1) short; CTA 2 reads what CTA 1 read, and hits in the L1 of SM 1.
+    Gpu gpu = one_warp_at_a_time();
+    gpu.sms = 2;
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}, {0}}), warp({{8}}), warp({{8}})}}).all().l1_hits == 4 + 2);
+}
+
+TEST_CASE("a launch of nothing counts nothing") {
+    CHECK(replay(small_gpu(), {nodes, {}}).groups.empty());
+    CHECK(replay(small_gpu(), {nodes, {warp({}), warp({})}}).groups.empty());
+}
+
+TEST_CASE("hits and misses add up, and what one level misses the next is asked for") {
+    const Launch launch = random_launch(nodes, 60, 40, 11);
+    const Counters c = replay(small_gpu(), launch).all();
+    CHECK(c.sectors == c.l1_hits + c.l2_sectors);
+    CHECK(c.l2_sectors == c.l2_hits + c.dram_sectors);
+    CHECK(c.dram_sectors > 0);
+    CHECK(c.l1_hits > 0);
+    CHECK(c.l2_hits > 0);
+}
+
+TEST_CASE("permuting lanes changes nothing while a warp access touches one line") {
+    std::mt19937 random(2);
+    auto forward = std::make_shared<traces::WarpTrace>(), backward = std::make_shared<traces::WarpTrace>();
+    for (int i = 0; i < 300; ++i) {
+        const std::uint32_t line = random() % 40, a = 2 * line, b = 2 * line + random() % 2;
+        for (const auto& [w, elements] : {std::pair{forward, std::pair{a, b}}, std::pair{backward, std::pair{b, a}}}) {
+            w->records.push_back({0b101, 0, traces::RayType::camera, 0, 0});
+            w->elements.push_back(elements.first);
+            w->elements.push_back(elements.second);
+        }
+    }
+    CHECK(replay(small_gpu(), {nodes, {forward}}) == replay(small_gpu(), {nodes, {backward}}));
+}
+
+TEST_CASE("the same launch gives the same counts every time") {
+    const Launch launch = random_launch(nodes, 60, 40, 12);
+    CHECK(replay(small_gpu(), launch) == replay(small_gpu(), launch));
+}
+
+TEST_CASE("warps are let go when they end") {
+    Gpu gpu = one_warp_at_a_time();
+    Replay replay(gpu, nodes, 0);
+    const auto first = warp({{0}, {1}});
+    const std::weak_ptr<const traces::WarpTrace> watched = first;
+    replay.push(first);
+    CHECK(watched.use_count() == 2);
+    replay.push(warp({{2}}));  // needs the only slot
+    CHECK(watched.use_count() == 1);
+    replay.finish();
+}
+
+TEST_CASE("records that contradict the regions are refused") {
+    const auto refused = [](const traces::WarpTrace& w, const char* what) {
+        Replay replay(small_gpu(), nodes, 0);
+        CHECK_THROWS_WITH(replay.push(std::make_shared<traces::WarpTrace>(w)),
+                          Catch::Contains("launch 0, warp 0") && Catch::Contains(what));
+    };
+    traces::WarpTrace good = *warp({{1, 2}}), w = good;
+    w.records[0].region = 1;
+    refused(w, "region");
+    w = good;
+    w.records[0].ray = static_cast<traces::RayType>(3);
+    refused(w, "ray type");
+    w = good;
+    w.elements[1] = 1000;
+    refused(w, "1000");
+    w = good;
+    w.elements.pop_back();
+    refused(w, "2 active lanes");
+    w = good;
+    w.elements.push_back(0);
+    refused(w, "2 elements");
+    w = good;
+    w.records[0].mask = 0;
+    refused(w, "active lanes");
+}
+
+TEST_CASE("a GPU that breaks a rule is refused before anything is allocated") {
+    Gpu gpu = small_gpu();
+    gpu.l2.ways = std::uint64_t{1} << 63;
+    CHECK_THROWS_WITH(Replay(gpu, nodes, 0), Catch::Contains("\"small\": l2.ways: expected"));
+}
+
+TEST_CASE("counters add beyond 2^32") {
+    Counters a;
+    a.sectors = 0xffffffffu;
+    a.dram_sectors = std::uint64_t{1} << 40;
+    RayGroup group;
+    group.by_kind = {a, a, a};
+    group.rays = std::uint64_t{1} << 33;
+    LaunchStatistics launch{0, {group, group}};
+    CHECK(launch.all().sectors == 6 * 0xffffffffull);
+    CHECK(launch.all().dram_sectors == 6 * (std::uint64_t{1} << 40));
+    CHECK(launch.all().rays == std::uint64_t{1} << 34);
+}

@@ -1,0 +1,107 @@
+// Thread maps: who traces which pixel and sample.
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "traces/error.hpp"
+#include "tracer/simt/thread_map.hpp"
+
+using namespace raycache;
+using namespace raycache::tracer;
+
+namespace {
+
+constexpr std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {17, 33}, {512, 512}, {16, 16}, {15, 1}, {1, 100}, {33, 8}};
+
+}  // namespace
+
+TEST_CASE("thread map: tile gives every pixel exactly once, whatever the size of the picture") {
+    for (const auto& [width, height] : sizes) {
+        const LaunchGrid grid(ThreadMap::tile, width, height, 8);
+        CHECK(grid.samples_per_launch() == 1);
+        std::vector<int> count(std::size_t{width} * height);
+        for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+            const WarpJobs jobs = grid.jobs(warp, 5);
+            for (unsigned l = 0; l < 32; ++l) {
+                if (((jobs.mask >> l) & 1U) == 0) continue;
+                REQUIRE(jobs.lane[l].x < width);
+                REQUIRE(jobs.lane[l].y < height);
+                REQUIRE(jobs.lane[l].sample == 5);
+                ++count[std::size_t{jobs.lane[l].y} * width + jobs.lane[l].x];
+            }
+        }
+        bool once = true;
+        for (const int n : count) once = once && n == 1;
+        INFO(width << "x" << height);
+        CHECK(once);
+    }
+}
+
+TEST_CASE("thread map: a warp of tile is 8x4 pixels, row by row") {
+    const LaunchGrid grid(ThreadMap::tile, 512, 512, 1);
+    CHECK(grid.warps() == 512 * 512 / 32);
+    for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+        const WarpJobs jobs = grid.jobs(warp, 0);
+        REQUIRE(jobs.mask == ~0U);
+        REQUIRE(jobs.lane[0].x % 8 == 0);
+        REQUIRE(jobs.lane[0].y % 4 == 0);
+        for (unsigned l = 0; l < 32; ++l) {
+            REQUIRE(jobs.lane[l].x == jobs.lane[0].x + l % 8);
+            REQUIRE(jobs.lane[l].y == jobs.lane[0].y + l / 8);
+        }
+    }
+}
+
+TEST_CASE("thread map: eight warps in a row make a square of 16x16 pixels, squares follow row by row") {
+    const LaunchGrid grid(ThreadMap::tile, 64, 48, 1);
+    for (std::uint32_t warp = 0; warp < grid.warps(); ++warp)
+        for (const LaneJob& job : grid.jobs(warp, 0).lane) {
+            REQUIRE(job.x / 16 == warp / 8 % 4);
+            REQUIRE(job.y / 16 == warp / 8 / 4);
+        }
+}
+
+TEST_CASE("thread map: samples gives a warp one pixel and 32 consecutive samples, every pixel once") {
+    for (const auto& [width, height] : sizes) {
+        const LaunchGrid grid(ThreadMap::samples, width, height, 64);
+        CHECK(grid.samples_per_launch() == 32);
+        std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+        for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+            const WarpJobs jobs = grid.jobs(warp, 32);
+            if (jobs.mask == 0) continue;
+            REQUIRE(jobs.mask == ~0U);
+            for (unsigned l = 0; l < 32; ++l) {
+                REQUIRE(jobs.lane[l].x == jobs.lane[0].x);
+                REQUIRE(jobs.lane[l].y == jobs.lane[0].y);
+                REQUIRE(jobs.lane[l].sample == 32 + l);
+            }
+            REQUIRE(seen.insert({jobs.lane[0].x, jobs.lane[0].y}).second);
+        }
+        CHECK(seen.size() == std::size_t{width} * height);
+    }
+}
+
+TEST_CASE("thread map: with samples, lanes beyond N have no work") {
+    const LaunchGrid few(ThreadMap::samples, 4, 4, 5);
+    CHECK(few.jobs(0, 0).mask == 0b11111U);
+    const LaunchGrid more(ThreadMap::samples, 4, 4, 40);
+    CHECK(more.jobs(0, 0).mask == ~0U);
+    CHECK(more.jobs(0, 32).mask == 0xffU);
+}
+
+TEST_CASE("thread map: samples visits pixels in the order of tile") {
+    const LaunchGrid tile(ThreadMap::tile, 48, 32, 32), samples(ThreadMap::samples, 48, 32, 32);
+    for (std::uint32_t warp = 0; warp < tile.warps(); ++warp)
+        for (unsigned l = 0; l < 32; ++l) {
+            const LaneJob a = tile.jobs(warp, 0).lane[l], b = samples.jobs(32 * warp + l, 0).lane[0];
+            REQUIRE((a.x == b.x && a.y == b.y));
+        }
+}
+
+TEST_CASE("thread map: a name gives its map, another one is refused with the list") {
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples}) CHECK(thread_map_from(to_string(map)) == map);
+    CHECK_THROWS_AS(thread_map_from("tiles"), UsageError);
+    CHECK_THROWS_WITH(thread_map_from(""), Catch::Contains("tile, samples") && !Catch::Contains("\n"));
+}
