@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <thread>
@@ -198,7 +199,12 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
 }
 
 void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
-    const cachesim::Report report = cachesim::make_report(series, baseline, parse_by(by));
+    // Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+    const std::string usual = "cranley-patterson";
+    const auto is_usual = [&](const cachesim::Series& s) { return s.strategy == usual; };
+    const bool has_usual = std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
+    const cachesim::Report report =
+        cachesim::make_report(series, baseline.empty() && has_usual ? usual : baseline, parse_by(by));
     if (!save.empty()) {
         save_text(save + ".txt", cachesim::to_text(report));
         save_text(save + ".json", cachesim::to_json(report));

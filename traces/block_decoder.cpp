@@ -106,7 +106,7 @@ void Decoder::decode_access(const Header& header, Schedule& schedule, const Reco
     // The symbols that the loop below handles itself; the rest are spelled out.
     const unsigned spelled_from = format::sequential + (degree == 0 && record.region < unlinkable ? 1 : 0);
     SuccessorMasks masks;
-    std::uint32_t followed = 0, sequential = 0, beyond = 0;
+    std::uint32_t followed = record.mask, sequential = 0, beyond = 0;
     for (std::uint32_t left = record.mask; left != 0; left &= left - 1) {
         const auto lane = static_cast<unsigned>(std::countr_zero(left));
         const std::uint32_t bit = left & (0u - left);
@@ -115,6 +115,7 @@ void Decoder::decode_access(const Header& header, Schedule& schedule, const Reco
         const std::uint8_t symbol = *symbols++;
         if (symbol >= spelled_from) [[unlikely]] {
             spelled(header, schedule, lane, record.region, element + 1, symbol);
+            followed &= ~bit;
             continue;
         }
         LaneStack& stack = stacks_[lane];
@@ -126,9 +127,8 @@ void Decoder::decode_access(const Header& header, Schedule& schedule, const Reco
         } else {
             word = stack.follow(table + std::size_t{element} * degree, degree, symbol);
         }
-        followed |= bit;
         pending_[lane] = word & element_mask;
-        masks.add(lane, word);
+        masks.add(bit, word);
     }
     schedule.sequential |= sequential;
     if (beyond) fault("element", fmt::format("at most {}", last), "its successor");

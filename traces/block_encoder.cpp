@@ -16,7 +16,6 @@
 namespace raycache::traces {
 namespace {
 
-constexpr int level = 1;
 using NextIn = std::array<std::uint32_t, 3>;
 
 /// Turns warps into the raw streams of a block. Kept per thread for its memory.
@@ -232,7 +231,8 @@ Block Encoder::assemble(std::span<const WarpTrace> warps) {
     block.bytes.resize(format::block_head_bytes);
     for (unsigned s = 0; s < format::streams; ++s)
         head.sizes[s] = {static_cast<std::uint32_t>(raw[s].size()),
-                         static_cast<std::uint32_t>(compress(raw[s], level, block.bytes))};
+                         static_cast<std::uint32_t>(
+                             compress(raw[s], s == format::control ? Effort::fast : Effort::entropy, block.bytes))};
     head.bytes = static_cast<std::uint32_t>(block.bytes.size() + format::checksum_bytes);
     store_block_head(head, block.bytes.data());
     seal(block.bytes);

@@ -25,14 +25,15 @@ void store(std::uint8_t* p, T value) {
     for (unsigned i = 0; i < sizeof(T); ++i) p[i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
-template <std::unsigned_integral T>
-void append(Bytes& out, T value) {
-    out.resize(out.size() + sizeof(T));
-    store(out.data() + out.size() - sizeof(T), value);
-}
-
 void append(Bytes& out, std::span<const std::uint8_t> more);
 void append(Bytes& out, std::string_view text);
+
+template <std::unsigned_integral T>
+void append(Bytes& out, T value) {
+    std::uint8_t bytes[sizeof(T)];
+    store(bytes, value);
+    append(out, std::span<const std::uint8_t>(bytes));
+}
 
 /// Seven bits a byte, lowest first; the top bit of a byte says that another follows.
 inline void append_varint(Bytes& out, std::uint32_t value) {

@@ -1,8 +1,10 @@
 #include "traces/compression.hpp"
 
+#define ZSTD_STATIC_LINKING_ONLY  // for ZSTD_c_literalCompressionMode
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <array>
 #include <memory>
 #include <new>
 #include <string>
@@ -17,9 +19,24 @@ struct FreeContext {
     void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-ZSTD_CCtx* compressor() {
-    thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
+void set(ZSTD_CCtx* context, ZSTD_cParameter parameter, int value) {
+    const std::size_t result = ZSTD_CCtx_setParameter(context, parameter, value);
+    if (ZSTD_isError(result))
+        throw Error(fmt::format("zstd refused parameter {}: {}", int(parameter), ZSTD_getErrorName(result)));
+}
+
+/// One context per effort: to change the parameters of one costs more than to compress a small block.
+ZSTD_CCtx* compressor(Effort effort) {
+    thread_local std::array<std::unique_ptr<ZSTD_CCtx, FreeContext>, 3> contexts;
+    auto& context = contexts[static_cast<unsigned>(effort)];
+    if (context) return context.get();
+    context.reset(ZSTD_createCCtx());
     if (!context) throw std::bad_alloc();
+    set(context.get(), ZSTD_c_compressionLevel, effort == Effort::small ? 3 : 1);
+    if (effort == Effort::entropy) {
+        set(context.get(), ZSTD_c_targetLength, 1024);  // at this level: bytes to skip after a failed look-up
+        set(context.get(), ZSTD_c_literalCompressionMode, ZSTD_ps_enable);
+    }
     return context.get();
 }
 
@@ -31,12 +48,12 @@ ZSTD_DCtx* decompressor() {
 
 }  // namespace
 
-std::size_t compress(std::span<const std::uint8_t> raw, int level, Bytes& out) {
+std::size_t compress(std::span<const std::uint8_t> raw, Effort effort, Bytes& out) {
     if (raw.empty()) return 0;
     const std::size_t before = out.size();
     out.resize(before + ZSTD_compressBound(raw.size()));
     const std::size_t size =
-        ZSTD_compressCCtx(compressor(), out.data() + before, out.size() - before, raw.data(), raw.size(), level);
+        ZSTD_compress2(compressor(effort), out.data() + before, out.size() - before, raw.data(), raw.size());
     if (ZSTD_isError(size)) throw Error(fmt::format("zstd could not compress: {}", ZSTD_getErrorName(size)));
     out.resize(before + size);
     return size;

@@ -9,8 +9,15 @@
 
 namespace raycache::traces {
 
+/// How hard to look for repetitions.
+enum class Effort {
+    entropy,  ///< hardly: Huffman codes only. Symbols repeat by chance; matches among them cost time and bits
+    fast,     ///< zstd level 1
+    small,    ///< zstd level 3
+};
+
 /// Appends one zstd frame that holds `raw` (nothing for no bytes); returns the bytes appended.
-std::size_t compress(std::span<const std::uint8_t> raw, int level, Bytes& out);
+std::size_t compress(std::span<const std::uint8_t> raw, Effort, Bytes& out);
 
 /// Fills `raw`, whose size the caller has bounded, from one zstd frame; refuses any other content size.
 void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin&);

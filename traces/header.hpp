@@ -22,9 +22,9 @@ struct Region {
     std::uint32_t stride = 0;        ///< bytes from one element to the next, >= element_size
     std::uint32_t count = 0;         ///< elements, 0 … 2^30 - 1
 
-    /// Optional successor table: `degree` (0 … 16) links per element. A BVH node links to its children. The codec predicts a
-    /// lane's next access from it, and analyses derive BVH depth from it. A link is (region index << 30) | element
-    /// index, or `no_link`. Only regions 0 … 2 can be linked to, elements below 2^30 - 1.
+    /// Optional successor table: `degree` (0 … 16) links per element. A BVH node links to its children. The codec
+    /// predicts a lane's next access from it, and analyses derive BVH depth from it. A link is (region index << 30) |
+    /// element index, or `no_link`. Only regions 0 … 2 can be linked to, elements below 2^30 - 1.
     std::uint8_t degree = 0;
     std::vector<std::uint32_t> links;  ///< degree * count values
 

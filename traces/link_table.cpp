@@ -10,8 +10,6 @@
 namespace raycache::traces {
 namespace {
 
-constexpr int level = 3;
-
 /// Maps links to codes near zero and back. A code is the target region (3 for no link) in the top bits over the
 /// element's zigzag difference, modulo 2^30, from the prediction.
 class LinkCoder {
@@ -60,7 +58,7 @@ EncodedLinks encode_links(const Region& region, unsigned self) {
             for (unsigned k = 0; k < 4; ++k) planes[k * count + i] = static_cast<std::uint8_t>(code >> (8 * k));
         }
         Bytes bytes;
-        compress(planes, level, bytes);
+        compress(planes, Effort::small, bytes);
         if (best.bytes.empty() || bytes.size() < best.bytes.size()) best = {prediction, std::move(bytes)};
     }
     return best;

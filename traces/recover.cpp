@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,9 +69,9 @@ bool complete(const std::map<std::uint32_t, Found>& blocks, std::uint32_t warps)
 }
 
 Block renumbered(Bytes bytes, const BlockHead& head, std::uint32_t launch) {
-    bytes.resize(bytes.size() - format::checksum_bytes);
     store(bytes.data() + 12, launch);
-    seal(bytes);
+    const auto body = std::span(bytes).first(bytes.size() - format::checksum_bytes);
+    store(bytes.data() + body.size(), checksum(body));
     return {launch, head.first_warp, head.warps, head.records, head.lane_accesses, head.rays, std::move(bytes)};
 }
 

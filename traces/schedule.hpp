@@ -73,10 +73,10 @@ private:
 /// Collects the regions of the successors of one record's lanes, without a branch per lane.
 class SuccessorMasks {
 public:
-    [[gnu::always_inline]] void add(unsigned lane, std::uint32_t word) {
-        const std::uint32_t region = word >> 30;
-        low_ |= (region & 1) << lane;
-        high_ |= (region >> 1) << lane;
+    /// `bit` is that of the lane.
+    [[gnu::always_inline]] void add(std::uint32_t bit, std::uint32_t word) {
+        low_ |= bit & (0u - (word >> 30 & 1));
+        high_ |= bit & (0u - (word >> 31));
     }
     /// Adds to `waiting` the lanes of `lanes` that were added here; returns those whose word can be no link.
     std::uint32_t spread(std::uint32_t lanes, std::array<std::uint32_t, 256>& waiting) const {

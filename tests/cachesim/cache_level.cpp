@@ -47,7 +47,6 @@ void fills_and_evicts_by_hand() {
 
 TEST_CASE("a tiny cache fills and evicts as computed by hand") {
     fills_and_evicts_by_hand<LruFewWays>();
-    fills_and_evicts_by_hand<LruMediumWays<2>>();
     fills_and_evicts_by_hand<LruManyWays>();
 }
 

@@ -1,6 +1,8 @@
 // How far the replay is from a published simulator on the reference traces: cachesim/MODEL.md, "Measured".
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <ctime>
 #include <string>
 
 #include "oracle.hpp"
@@ -65,4 +67,24 @@ TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[
     CAPTURE(published.trace, published.sms, published.l1_ways, counts.l2_sectors, counts.dram_sectors);
     CHECK(std::fabs(percent_off(counts.l2_sectors, published.l1_misses)) < 4.5);
     CHECK(std::fabs(percent_off(counts.dram_sectors, published.dram_sectors)) < 1.2);
+}
+
+// Hidden: prints the speed of a replay, cachesim_tests "[speed]".
+TEST_CASE("a replay is fast", "[.speed]") {
+    const auto folder = reference_folder();
+    REQUIRE(folder);
+    for (const char* trace : {"hr_coh", "hr_cp", "cp"})
+        for (const char* gpu : {"gtx-980-ti", "h100"}) {
+            Launch launch = read_reference(*folder, trace);
+            const Warps once = launch.warps;
+            for (int i = 1; i < 4; ++i) launch.warps.insert(launch.warps.end(), once.begin(), once.end());
+            double seconds = 1e9;
+            for (int run = 0; run < 5; ++run) {
+                const std::clock_t start = std::clock();
+                replay(load_gpu(gpu), launch);
+                seconds = std::min(seconds, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+            }
+            WARN(trace << " on " << gpu << ": " << static_cast<double>(launch.lane_accesses()) / seconds / 1e6
+                       << " million lane accesses per second of CPU time");
+        }
 }

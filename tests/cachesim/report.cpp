@@ -187,7 +187,9 @@ TEST_CASE("one sample index gives no interval and says so once") {
 
 TEST_CASE("the text report is a readable table") {
     const std::string text = to_text(make_report(two_strategies(), "rotation", GroupBy::none));
-    CHECK(text == R"(strategy       N  GPU          rays  steps/ray  lanes/acc  sectors/acc  L1 %  L2 %  L2->L1 B/ray    DRAM B/ray    DRAM ratio
+    CHECK(
+        text ==
+        R"(strategy       N  GPU          rays  steps/ray  lanes/acc  sectors/acc  L1 %  L2 %  L2->L1 B/ray    DRAM B/ray    DRAM ratio
 ------------  --  ----------  -----  ---------  ---------  -----------  ----  ----  ------------  ------------  ------------
 rotation      64  gtx-980-ti  3 150       39.5       6.64         8.48  52.8  87.0   761.9 ±73.8  99.05 ±36.88      baseline
 micro-jitter  64  gtx-980-ti  3 120       38.0       8.14         8.35  66.7  87.8    415.4 ±7.5  50.77 ±33.83  0.513 ±0.151

@@ -1,7 +1,5 @@
 // The traversal against Embree's robust mode on whole scenes, with a judge in double arithmetic for the differences.
 #include <catch2/catch.hpp>
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
 
 #include "embree_comparison.hpp"
@@ -34,70 +32,54 @@ std::vector<Ray> random_segments(const Box& box, std::size_t count, std::uint32_
 }
 
 void check(const Comparison& result, double share) {
+    INFO(result.text());
     CHECK(result.ours_wrong == 0);
     CHECK(result.embree_wrong == 0);
-    CHECK(static_cast<double>(result.excused) <= 2 + share * static_cast<double>(result.rays));
+    CHECK(static_cast<double>(result.excused) <= share * static_cast<double>(result.rays));
 }
-
-class Clock {
-public:
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const double seconds = std::chrono::duration<double>(now - last_).count();
-        last_ = now;
-        return seconds;
-    }
-private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// A million rays: those of paths, random ones, and some aimed at edges.
 void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
-    Clock clock;
     const PreparedScene prepared(opaque(std::move(scene)), settings);
-    const double build = clock.lap();
     const EmbreeReference embree(prepared.scene());
-    const double build2 = clock.lap();
     const std::size_t from_paths = million * 6 / 10, others = million / 10;
     RayCollector collector(prepared);
     trace_pictures(prepared, collector, 256, PathSettings{.bounces = 4, .russian_roulette = false},
                    [&] { return collector.closest_rays.size() + collector.shadow_rays.size() < from_paths; });
     const Box box = widened(prepared.scene().bounds());
 
-    const Comparison path = compare_closest(prepared, embree, collector.closest_rays);
-    const Comparison shadow = compare_any(prepared, embree, collector.shadow_rays);
-    const Comparison random = compare_closest(prepared, embree, random_rays(box, others, 1));
-    const Comparison segments = compare_closest(prepared, embree, random_segments(box, others, 2));
-    const Comparison any = compare_any(prepared, embree, random_segments(box, others, 3));
-    const auto at_edges = aimed_rays(prepared.scene(), box, others, 4);
-    const Comparison aimed = compare_closest(prepared, embree, at_edges), aimed_any = compare_any(prepared, embree, at_edges);
-    INFO("path " << path.text() << "\nshadow " << shadow.text() << "\nrandom " << random.text() << "\nsegments "
-                          << segments.text() << "\nany " << any.text() << "\naimed " << aimed.text() << "\naimed any "
-                          << aimed_any.text());
-    if (std::getenv("H_VERBOSE")) WARN("path " << path.text() << "\nshadow " << shadow.text() << "\nrandom " << random.text() << "\nsegments "
-                          << segments.text() << "\nany " << any.text() << "\naimed " << aimed.text() << "\naimed any "
-                          << aimed_any.text() << "\nbuild " << build << " embree " << build2 << " trace " << clock.lap());
-    for (const Comparison& result : {path, shadow, random, segments, any}) check(result, excused_share);
-    check(aimed, excused_aimed_share);
-    check(aimed_any, excused_aimed_share);
-}
+    Comparison found = compare_closest(prepared, embree, collector.closest_rays);
+    found += compare_any(prepared, embree, collector.shadow_rays);
+    found += compare_closest(prepared, embree, random_rays(box, others, 1));
+    found += compare_closest(prepared, embree, random_segments(box, others, 2));
+    found += compare_any(prepared, embree, random_segments(box, others, 3));
+    check(found, excused_share);
 
-std::string scenes_folder() {
-    const char* given = std::getenv("RAYCACHE_SCENES");
-    return given != nullptr ? given : RAYCACHE_SOURCE_DIR "/../shared/scenes";
+    const auto at_edges = aimed_rays(prepared.scene(), box, others, 4);
+    Comparison aimed = compare_closest(prepared, embree, at_edges);
+    aimed += compare_any(prepared, embree, at_edges);
+    check(aimed, excused_aimed_share);
 }
 
 }  // namespace
 
 TEST_CASE("embree: hits equal Embree's on a million rays in each built scene") {
     const std::size_t million = 1000000;
-    SECTION("soup of small triangles") { compare_on(soup(20000, 0.1F, 1), {}, million); }
+    const Camera outside{"outside", {0.1F, 0.2F, 4}, {0, 0, -1}, {0, 1, 0}, 40};
+    SECTION("soup of small triangles") {
+        Scene scene = soup(20000, 0.1F, 1);
+        scene.cameras = {outside};
+        compare_on(std::move(scene), {}, million);
+    }
     SECTION("soup of large triangles with spatial splits") {
-        compare_on(soup(2000, 1.0F, 2), {.max_leaf_size = 4, .spatial_splits = true}, million);
+        Scene scene = soup(2000, 1.0F, 2);
+        scene.cameras = {outside};
+        compare_on(std::move(scene), {.max_leaf_size = 4, .spatial_splits = true}, million);
     }
     SECTION("sphere in a box") {
         Scene scene = icosphere(5);
-        append(scene, moved(icosphere(0), 4, {0, 0, 0}));
+        append(scene, moved(icosphere(0), 8, {0, 0, 0}));
+        scene.cameras = {outside};
         compare_on(std::move(scene), {}, million);
     }
 }

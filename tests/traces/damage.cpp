@@ -142,7 +142,7 @@ TEST_CASE("mutated symbols in a block stay inside the trace") {
                     good.begin() + static_cast<std::ptrdiff_t>(at + format::block_head_bytes));
         for (unsigned s = 0; s < format::streams; ++s) {
             store(block.data() + 48 + 8 * s, static_cast<std::uint32_t>(streams[s].size()));
-            const auto stored = static_cast<std::uint32_t>(compress(streams[s], 1, block));
+            const auto stored = static_cast<std::uint32_t>(compress(streams[s], Effort::fast, block));
             store(block.data() + 52 + 8 * s, stored);
         }
         store(block.data() + 8, static_cast<std::uint32_t>(block.size() + 8));
