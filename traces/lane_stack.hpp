@@ -19,6 +19,12 @@ inline constexpr std::uint32_t element_mask = (1u << element_bits) - 1;
 inline constexpr std::uint32_t unlinkable = 3;                        ///< top bits of a word that no link can hold
 inline constexpr std::uint32_t no_word = unlinkable << element_bits;  ///< the first such word
 
+/// Asks for the links of `element`, which a lane will read soon; the element may be no element of the table's region.
+[[gnu::always_inline]] inline void prefetch_links(const std::uint32_t* table, unsigned degree, std::uint32_t element) {
+    const auto address = reinterpret_cast<std::uintptr_t>(table) + sizeof *table * std::size_t{element} * degree;
+    __builtin_prefetch(reinterpret_cast<const void*>(address));
+}
+
 struct LaneStack {
     /// Below the stack stand as many `no_link` words as a symbol can reach down: no check on the way is needed.
     static constexpr unsigned floor = 128;
@@ -33,7 +39,7 @@ struct LaneStack {
     /// depth < degree takes that link and pushes the others, the first one topmost; any other depth pops
     /// depth - degree + 1 words and takes the last of them. The result is `no_link` if there is no such word.
     [[gnu::always_inline]] std::uint32_t follow(const std::uint32_t* links, unsigned degree, unsigned depth) {
-        const std::uint32_t below = top + degree - 1 - std::max(depth, degree);
+        const std::uint32_t below = top + degree - 1 - depth;  // a word of the array even where it is not used
         const std::uint32_t popped = words[below];
         if (degree == 0) return top = below, popped;
         const std::uint32_t pop = 0u - std::uint32_t{depth >= degree};  // all ones or none: no branch to mispredict

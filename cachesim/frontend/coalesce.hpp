@@ -37,25 +37,26 @@ public:
             layouts_.push_back(make_layout(regions[i], ids.offset(i), line_bytes));
             most_lines = std::max<std::size_t>(most_lines, (regions[i].element_size - 1) / line_bytes + 2);
         }
-        max_requests_ = most_lines * traces::warp_lanes;
+        max_requests_ = most_lines * traces::warp_lanes + 1;
         // At most a quarter full, so that a probe rarely meets another line.
         table_.resize(std::bit_ceil(std::max<std::size_t>(256, 4 * max_requests_)));
         table_shift_ = 64 - std::countr_zero(table_.size());
     }
 
-    /// No warp access becomes more requests than this.
+    /// Every warp access becomes fewer requests than this.
     std::size_t max_requests() const { return max_requests_; }
 
     /// `elements`: one index per active lane, lowest lane first. Requests go to `out`, which has room for
     /// max_requests(), with cache and group as in `like`.
     Coalesced operator()(std::size_t region, const std::uint32_t* elements, unsigned lanes, const Request& like,
                          Request* out) {
-        if (++generation_ == 0) {  // after 2^32 accesses: forget what looks like new
-            std::fill(table_.begin(), table_.end(), Entry{});
-            generation_ = 1;
+        if (base_ > ~std::uint32_t{0} - 2 * static_cast<std::uint32_t>(max_requests_)) {
+            std::fill(table_.begin(), table_.end(), 0);
+            base_ = 0;
         }
+        base_ += static_cast<std::uint32_t>(max_requests_);  // every entry so far is below
         const Layout& layout = layouts_[region];
-        Merger merger{table_.data(), table_.size() - 1, table_shift_, generation_, layout.id_offset, like, out, {}};
+        Merger merger{table_.data(), table_.size() - 1, table_shift_, base_, layout.id_offset, like, out, {}};
         if (layout.aligned)
             merge_aligned(layout, elements, lanes, merger);
         else
@@ -72,39 +73,39 @@ private:
         std::uint64_t first_line = 0;
         std::vector<std::uint32_t> sectors;  ///< aligned: of each element of a line
     };
-    /// Hash table of the lines seen in this access; entries of earlier generations count as empty.
-    struct Entry {
-        std::uint64_t line = 0;
-        std::uint32_t generation = 0, place = 0;
-    };
-
-    /// The lines of the access so far. Free of branches that depend on whether a line is new: they cannot be predicted.
+    /// The lines of the access so far: out[0 … requests). A hash table says at which place to look for a line: an entry
+    /// is base + place; entries of earlier accesses are below base, so they are at no place. Free of branches that
+    /// depend on whether a line is new, which cannot be predicted: a new line is put behind the others before the
+    /// search, as a sentinel, and counts if it is what the search finds.
     struct Merger {
-        Entry* const table;
+        std::uint32_t* const table;
         const std::size_t table_mask;
         const int table_shift;
-        const std::uint32_t generation;
+        const std::uint32_t base;
         const std::uint64_t id_offset;
         const Request like;
         Request* const out;
         Coalesced result;
 
         void touch(std::uint64_t line, std::uint32_t sectors) {
+            Request& sentinel = out[result.requests];
+            sentinel.line = line;
+            sentinel.id = static_cast<std::uint32_t>(line - id_offset);
+            sentinel.sectors = 0;
+            sentinel.cache = like.cache;
+            sentinel.group = like.group;
+            const auto end = static_cast<std::uint32_t>(result.requests);
             // Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
             std::size_t at = (line * 0x9e3779b97f4a7c15ull) >> table_shift;
-            while ((table[at].generation == generation) & (table[at].line != line))
-                [[unlikely]] at = (at + 1) & table_mask;
-            const std::uint64_t seen = table[at].generation == generation;
-            const std::uint64_t place = result.requests ^ ((result.requests ^ table[at].place) & (0 - seen));
-            Request& request = out[place];  // not seen: whatever stood there before
-            const std::uint32_t before = request.sectors & (0u - static_cast<std::uint32_t>(seen));
-            table[at] = {line, generation, static_cast<std::uint32_t>(place)};
-            request.line = line;
-            request.id = static_cast<std::uint32_t>(line - id_offset);
-            request.sectors = before | sectors;
-            request.cache = like.cache;
-            request.group = like.group;
-            result.requests += 1 - seen;
+            std::uint32_t place = std::min(table[at] - base, end);
+            while (out[place].line != line) [[unlikely]] {
+                    at = (at + 1) & table_mask;
+                    place = std::min(table[at] - base, end);
+                }
+            table[at] = base + place;
+            const std::uint32_t before = out[place].sectors;
+            out[place].sectors = before | sectors;
+            result.requests += place == end;
             result.sectors += static_cast<unsigned>(std::popcount(sectors & ~before));
         }
     };
@@ -159,9 +160,9 @@ private:
     int line_shift_, sector_shift_, table_shift_ = 0;
     std::uint64_t sectors_per_line_;
     std::size_t max_requests_ = 0;
-    std::uint32_t generation_ = 0;
+    std::uint32_t base_ = 0;
     std::vector<Layout> layouts_;
-    std::vector<Entry> table_;
+    std::vector<std::uint32_t> table_;
 };
 
 }  // namespace raycache::cachesim

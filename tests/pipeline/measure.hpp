@@ -48,12 +48,13 @@ struct Traffic {
 inline tracer::CaptureSettings capture_settings(const std::string& strategy, const std::string& sequence, std::uint64_t spp,
                                                 std::uint64_t trace_samples) {
     tracer::CaptureSettings settings;
-    settings.width = settings.height = 192;
+    settings.width = settings.height = 384;
     settings.trace_samples = trace_samples;
     settings.strategy.sequence = sequence;
     settings.strategy.decorrelation = strategy;
     settings.strategy.parameters.spp = spp;
     settings.strategy.parameters.seed = 1;
+    settings.strategy.parameters.k = 1;
     return settings;
 }
 

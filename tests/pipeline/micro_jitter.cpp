@@ -67,7 +67,6 @@ TEST_CASE("micro-jitter of one sample and K >= 1 misses as often as cranley-patt
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         auto settings = capture_settings("cranley-patterson", "sobol", 1, 1);
         settings.strategy.parameters.seed = seed;
-        settings.strategy.parameters.k = 1;
         rotated.push_back(measure(scene, settings).front());
         settings.strategy.decorrelation = "micro-jitter";
         jittered.push_back(measure(scene, settings).front());

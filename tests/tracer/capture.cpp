@@ -65,7 +65,7 @@ TEST_CASE("capture: a textured scene has a texel region") {
     Scene scene = sunny_soup();
     scene.textures.push_back({1, 1, {1, 2, 3, 255}, "dot"});
     const PreparedScene prepared(std::move(scene), {});
-    const auto& regions = Capture(prepared, small_picture()).header().regions;
+    const auto regions = Capture(prepared, small_picture()).header().regions;
     REQUIRE(regions.size() == 3);
     CHECK(regions[2].kind == traces::ObjectKind::texel);
     CHECK(regions[2].stride == 4);

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// glTF itself needs about 6 levels; tinygltf descends recursively.
+/// glTF itself needs about 6 levels; tinygltf and remove_extras() descend recursively.
 constexpr int max_json_depth = 64;
 
 constexpr std::array understood_extensions{"KHR_materials_emissive_strength", "KHR_mesh_quantization"};
@@ -26,20 +26,42 @@ bool is_understood(const std::string& extension) {
            understood_extensions.end();
 }
 
+/// How deep brackets nest outside strings. The text need not be valid.
+int nesting_depth(std::string_view text) {
+    int depth = 0, deepest = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\') ++i;
+            if (c == '"') in_string = false;
+            continue;
+        }
+        if (c == '"') in_string = true;
+        if (c == '{' || c == '[') deepest = std::max(deepest, ++depth);
+        if (c == '}' || c == ']') --depth;
+    }
+    return deepest;
+}
+
+/// `extras` may hold anything; tinygltf would make large structures of it.
+void remove_extras(json& value) {
+    if (value.is_object()) value.erase("extras");
+    if (value.is_structured())
+        for (json& item : value) remove_extras(item);
+}
+
 json parse_json(std::string_view text, const GltfReport& report) {
-    bool too_deep = false;
-    const auto keep = [&](int depth, json::parse_event_t event, json& value) {
-        too_deep = too_deep || depth > max_json_depth;
-        return !too_deep && !(event == json::parse_event_t::key && value == "extras");
-    };
+    if (const int depth = nesting_depth(text); depth > max_json_depth)
+        report.fail("JSON text", fmt::format("at most {} nested levels", max_json_depth), fmt::format("{}", depth));
     json document;
     try {
-        document = json::parse(text.begin(), text.end(), keep);
+        document = json::parse(text.begin(), text.end());
     } catch (const json::exception& e) {
         report.fail("JSON text", "valid JSON", e.what());
     }
-    if (too_deep) report.fail("JSON text", fmt::format("at most {} nested levels", max_json_depth), "more");
     if (!document.is_object()) report.fail("JSON text", "an object", document.type_name(), "export the scene again");
+    remove_extras(document);
     return document;
 }
 
