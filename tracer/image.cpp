@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 
+#include "tracer/png_chunks.hpp"
 #include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
@@ -42,6 +43,7 @@ public:
         if (!png && !jpeg)
             throw Error(fmt::format("{}: expected a PNG or JPEG image, found {} bytes of something else; convert it",
                                     name, bytes.size()));
+        if (png && !is_whole_png(bytes)) fail("a chunk is cut short or has a wrong checksum");
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);  // glTF's colours are not multiplied by alpha
         input = OIIO::ImageInput::create(png ? "png" : "jpeg");

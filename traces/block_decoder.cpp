@@ -128,7 +128,6 @@ void Decoder::decode_access(const Header& header, Schedule& schedule, const Reco
             word = stack.follow(table + std::size_t{element} * degree, degree, symbol);
         }
         pending_[lane] = word & element_mask;
-        if (degree != 0) prefetch_links(table, degree, pending_[lane]);
         masks.add(bit, word);
     }
     schedule.sequential |= sequential;

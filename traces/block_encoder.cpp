@@ -87,7 +87,6 @@ void Encoder::encode_access(const Header& header, Schedule& schedule, const Reco
         const std::uint32_t element = *elements, word = to->word;
         const std::uint32_t* links = table + std::size_t{element} * degree;
         LaneStack& stack = stacks_[lane];
-        if (degree != 0) prefetch_links(table, degree, to->element());
         unsigned symbol = not_found;
         if (degree == 0 && linkable && word == (high | element) + 1) {
             symbol = format::sequential;

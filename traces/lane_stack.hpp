@@ -19,12 +19,6 @@ inline constexpr std::uint32_t element_mask = (1u << element_bits) - 1;
 inline constexpr std::uint32_t unlinkable = 3;                        ///< top bits of a word that no link can hold
 inline constexpr std::uint32_t no_word = unlinkable << element_bits;  ///< the first such word
 
-/// Asks for the links of `element`, which a lane will read soon; the element may be no element of the table's region.
-[[gnu::always_inline]] inline void prefetch_links(const std::uint32_t* table, unsigned degree, std::uint32_t element) {
-    const auto address = reinterpret_cast<std::uintptr_t>(table) + sizeof *table * std::size_t{element} * degree;
-    __builtin_prefetch(reinterpret_cast<const void*>(address));
-}
-
 struct LaneStack {
     /// Below the stack stand as many `no_link` words as a symbol can reach down: no check on the way is needed.
     static constexpr unsigned floor = 128;

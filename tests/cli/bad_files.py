@@ -179,10 +179,12 @@ class BadGpus(ProgramTest):
         self.refuse_gpu(GPU_FILE[:GPU_FILE.index("[l2]")], "l2")
 
     def test_values_of_the_wrong_type_or_out_of_range(self):
-        for old, new in (("sms = { value = 2,", 'sms = { value = "two",'), ("sms = { value = 2,", "sms = { value = 2.5,"),
+        for old, new in (("sms = { value = 2,", 'sms = { value = "two",'),
+                         ("sms = { value = 2,", "sms = { value = 2.5,"),
                          ("sms = { value = 2,", "sms = { value = 0,"), ("sms = { value = 2,", "sms = { value = -2,"),
                          ("sms = { value = 2,", "sms = { value = 9223372036854775807,"),
-                         ("value = 128,", "value = 100,"), ("value = 32,", "value = 0,"), ("value = 32,", "value = 256,"),
+                         ("value = 128,", "value = 100,"), ("value = 32,", "value = 0,"),
+                         ("value = 32,", "value = 256,"),
                          ("value = 16,", "value = 0,"), ('"lru"', '"clairvoyant"'), ('"modulo"', '"random"'),
                          ('name = "tiny"', "name = 5")):
             with self.subTest(new):

@@ -25,7 +25,8 @@ class HelpAndList(ProgramTest):
         for name in SUBCOMMANDS:
             for line in re.sub(r"\n {20,}", " ", self.succeeds(name, "--help").text).splitlines():
                 if re.match(r"^  -{1,2}[a-z]", line):
-                    without_type = re.sub(r"^  \S+( [A-Z]+(:\S+)?(=\S+)?)?( in \[.*?\])?( REQUIRED)?( \.\.\.)?", "", line)
+                    option = r"^  \S+( [A-Z]+(:\S+)?(=\S+)?)?( in \[.*?\])?( REQUIRED)?( \.\.\.)?"
+                    without_type = re.sub(option, "", line)
                     self.assertRegex(without_type, r"[a-zA-Z]{2}", f"{name}: {line!r}")
 
     def test_the_version_is_one_line_with_the_name_of_the_program(self):

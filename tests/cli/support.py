@@ -1,4 +1,4 @@
-"""What the tests of the command line share: running raycache in an empty folder, and what every refusal must look like."""
+"""What the tests of the command line share: running raycache in an empty folder, and what a refusal must look like."""
 import json
 import os
 import pathlib

@@ -48,7 +48,7 @@ struct Traffic {
 inline tracer::CaptureSettings capture_settings(const std::string& strategy, const std::string& sequence, std::uint64_t spp,
                                                 std::uint64_t trace_samples) {
     tracer::CaptureSettings settings;
-    settings.width = settings.height = 384;
+    settings.width = settings.height = 256;
     settings.trace_samples = trace_samples;
     settings.strategy.sequence = sequence;
     settings.strategy.decorrelation = strategy;

@@ -55,26 +55,29 @@ TEST_CASE("micro-jitter misses less than cranley-patterson in L1 and in L2, with
         return;
     }
     INFO(name << ", " << sequence << ", N = " << spp);
-    const auto rotated = measure(*scene, capture_settings("cranley-patterson", sequence, spp, 6));
-    const auto jittered = measure(*scene, capture_settings("micro-jitter", sequence, spp, 6));
+    const auto traffic = [&](const char* strategy) {
+        auto settings = capture_settings(strategy, sequence, spp, 5);
+        settings.width = settings.height = 384;  // coarser pixels see different leaves, and nothing helps much
+        return measure(*scene, settings);
+    };
+    const auto rotated = traffic("cranley-patterson"), jittered = traffic("micro-jitter");
     CHECK(lower(jittered, rotated, &Traffic::l2_bytes));
     CHECK(lower(jittered, rotated, &Traffic::dram_bytes));
 }
 
-TEST_CASE("micro-jitter of one sample and K >= 1 misses as often as cranley-patterson: they are one sampler", "[slow]") {
+TEST_CASE("with one sample and K = 1 micro-jitter saves nothing", "[slow]") {
     const tracer::PreparedScene& scene = *find_scene("courtyard");
-    std::vector<Traffic> rotated, jittered;
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    constexpr std::uint64_t seeds = 4;
+    std::vector<Traffic> rotated(seeds), jittered(seeds);
+    tbb::parallel_for(std::uint64_t{0}, seeds, [&](std::uint64_t i) {
         auto settings = capture_settings("cranley-patterson", "sobol", 1, 1);
-        settings.strategy.parameters.seed = seed;
-        rotated.push_back(measure(scene, settings).front());
+        settings.strategy.parameters.seed = i + 1;
+        rotated[i] = measure(scene, settings).front();
         settings.strategy.decorrelation = "micro-jitter";
-        jittered.push_back(measure(scene, settings).front());
-    }
-    CHECK_FALSE(lower(jittered, rotated, &Traffic::l2_bytes));
-    CHECK_FALSE(lower(jittered, rotated, &Traffic::dram_bytes));
-    CHECK(mean(jittered, &Traffic::l2_bytes) == Approx(mean(rotated, &Traffic::l2_bytes)).epsilon(0.02));
-    CHECK(mean(jittered, &Traffic::dram_bytes) == Approx(mean(rotated, &Traffic::dram_bytes)).epsilon(0.02));
+        jittered[i] = measure(scene, settings).front();
+    });
+    CHECK(mean(jittered, &Traffic::l2_bytes) == Approx(mean(rotated, &Traffic::l2_bytes)).epsilon(0.01));
+    CHECK(mean(jittered, &Traffic::dram_bytes) == Approx(mean(rotated, &Traffic::dram_bytes)).epsilon(0.01));
 }
 
 TEST_CASE("at N = 16384 micro-jitter lies nearer to coherent than to cranley-patterson", "[slow]") {

@@ -37,15 +37,19 @@ std::vector<Vec3> points_on(const Scene& scene) {
     return points;
 }
 
-/// Both engines' answers justified on every ray; no claim about how many differ.
-void check(const Scene& scene, std::span<const Ray> rays, const BvhSettings& settings = {}) {
+/// Embree's answers may be unjustified on this share of rays: a triangle whose normal is all rounding gives it a t
+/// beyond the triangle's ends.
+constexpr double embree_share_on_slivers = 1e-3;
+
+/// Our answers justified on every ray, and Embree's but for `embree_share` of them; no claim about how many differ.
+void check(const Scene& scene, std::span<const Ray> rays, const BvhSettings& settings = {}, double embree_share = 0) {
     const PreparedScene prepared(Scene(scene), settings);
     const EmbreeReference embree(prepared.scene());
     Comparison found = compare_closest(prepared, embree, rays);
     found += compare_any(prepared, embree, rays);
     INFO(found.text());
     CHECK(found.ours_wrong == 0);
-    CHECK(found.embree_wrong == 0);
+    CHECK(static_cast<double>(found.embree_wrong) <= embree_share * static_cast<double>(found.rays));
     // And the judge on ours alone, whatever Embree says.
     const auto hits = closest_hits(prepared, rays);
     std::uint64_t wrong = 0;
@@ -135,8 +139,8 @@ TEST_CASE("embree: degenerate triangles among sound ones") {
             default: append(scene, mesh({a, b, (a + b) * 0.5F}, {0, 1, 2}));
         }
     }
-    check(scene, mixed_rays(scene, 50000));
-    check(scene, mixed_rays(scene, 50000), {.max_leaf_size = 4, .spatial_splits = true});
+    check(scene, mixed_rays(scene, 50000), {}, embree_share_on_slivers);
+    check(scene, mixed_rays(scene, 50000), {.max_leaf_size = 4, .spatial_splits = true}, embree_share_on_slivers);
 }
 
 TEST_CASE("embree: duplicate triangles, coplanar overlapping ones and flipped ones") {

@@ -116,8 +116,8 @@ std::vector<Bad> bad_files() {
         {"warps-missing", [](Bytes& b) { store(b.data() + 32, 2u), reseal_head(b); },
          "expected every warp of every launch, found none for launch 0 warp 1"},
         {"index-elsewhere", [](Bytes& b) { b[b.size() - 24 - 48] ^= 1, reseal_index(b); }, "place of block 0"},
-        {"no-index", [](Bytes& b) { b.resize(b.size() - 88); }, "end of the file: expected the end mark RCEND"},
-        {"cut-short", [](Bytes& b) { b.resize(b.size() - 5); },
+        {"no-index", [](Bytes& b) { b.erase(b.end() - 88, b.end()); }, "end of the file: expected the end mark RCEND"},
+        {"cut-short", [](Bytes& b) { b.erase(b.end() - 5, b.end()); },
          "keep its whole launches with `raycache verify --recover`"},
         {"bytes-added", [](Bytes& b) { b.push_back(0); }, "end of the file: expected the end mark RCEND"},
     };

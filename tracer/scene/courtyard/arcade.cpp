@@ -16,7 +16,7 @@ constexpr std::array<Vec2, 9> archivolt{{{0, 0.30F},
                                          {0.04F, 0.09F},
                                          {0.06F, 0.07F},
                                          {0.05F, 0.02F},
-                                         {0.02F, 0}}};
+                                         {0, 0}}};
 constexpr std::array<Vec2, 10> cornice{{{0, 0},
                                         {0.05F, 0.01F},
                                         {0.06F, 0.05F},

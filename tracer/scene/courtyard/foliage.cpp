@@ -36,7 +36,7 @@ MeshBuilder leaf(Shape shape, int segments) {
     MeshBuilder b;
     const auto base = b.vertex({0, 0, 0});
     if (segments == 1) {
-        const auto right = b.vertex(edge(0.42F, -1)), left = b.vertex(edge(0.42F, 1)), tip = b.vertex({0, -bend, 1});
+        const auto right = b.vertex(edge(0.42F, 1)), left = b.vertex(edge(0.42F, -1)), tip = b.vertex({0, -bend, 1});
         b.triangle(base, left, tip);
         b.triangle(base, tip, right);
         return b;
@@ -45,7 +45,7 @@ MeshBuilder leaf(Shape shape, int segments) {
     for (int i = 1; i < segments; ++i) {
         const float t = static_cast<float>(i) / static_cast<float>(segments);
         const auto next_rib = b.vertex({0, -bend * t * t, t});
-        const auto next_left = b.vertex(edge(t, 1)), next_right = b.vertex(edge(t, -1));
+        const auto next_left = b.vertex(edge(t, -1)), next_right = b.vertex(edge(t, 1));
         if (i == 1) {
             b.triangle(base, next_left, next_rib);
             b.triangle(base, next_rib, next_right);

@@ -35,12 +35,11 @@ void wall_band(MeshBuilder& b, float left, float right, float bottom, float top,
 void reveals(MeshBuilder& b, const Opening& o) {
     b.use(Stuff::white_plaster);
     const float z0 = wall_z, z1 = wall_z + reveal;
-    flat(b, {o.left, o.bottom, z0}, {o.left, o.bottom, z1}, {o.left, o.top, z1}, {o.left, o.top, z0}, texture_scale);
-    flat(b, {o.right, o.bottom, z1}, {o.right, o.bottom, z0}, {o.right, o.top, z0}, {o.right, o.top, z1},
-         texture_scale);
-    flat(b, {o.left, o.top, z1}, {o.right, o.top, z1}, {o.right, o.top, z0}, {o.left, o.top, z0}, texture_scale);
-    flat(b, {o.right, o.bottom, z1}, {o.left, o.bottom, z1}, {o.left, o.bottom, z0}, {o.right, o.bottom, z0},
-         texture_scale);
+    const auto face = [&](Vec3 p, Vec3 q, Vec3 r, Vec3 t) { flat(b, p, q, r, t, texture_scale); };
+    face({o.left, o.bottom, z1}, {o.left, o.bottom, z0}, {o.left, o.top, z0}, {o.left, o.top, z1});
+    face({o.right, o.bottom, z0}, {o.right, o.bottom, z1}, {o.right, o.top, z1}, {o.right, o.top, z0});
+    face({o.right, o.top, z1}, {o.left, o.top, z1}, {o.left, o.top, z0}, {o.right, o.top, z0});
+    face({o.left, o.bottom, z1}, {o.right, o.bottom, z1}, {o.right, o.bottom, z0}, {o.left, o.bottom, z0});
 }
 
 /// Stone around an opening, a little out of the wall.
@@ -220,7 +219,7 @@ void bell_tower(MeshBuilder& b, Fineness fine) {
         sheet(b, segments, 1,
               [&](float u, float v) {
                   const auto [c, s] = cos_sin(0.5 * static_cast<double>(u));
-                  return Vec3{-r * c, spring_y + r * s, h - 0.5F * v};
+                  return Vec3{r * c, spring_y + r * s, h - 0.5F * v};
               },
               {1.0F, 0.2F});
         b.frame(outer);
