@@ -1,5 +1,5 @@
-// Capture (traversal, shading, encoding and writing the trace) against Embree's rtcIntersect1 / rtcOccluded1 on the same rays,
-// in turn within one repetition, so that a machine that slows down slows both.
+// Capture (traversal, shading, encoding and writing the trace) against Embree's rtcIntersect1 / rtcOccluded1 on the
+// same rays, in turn within one repetition, so that a machine that slows down slows both.
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -91,7 +91,10 @@ void capture_against_embree(benchmark::State& state, const char* strategy) {
     std::filesystem::remove(path);
 }
 
-BENCHMARK_CAPTURE(capture_against_embree, coherent, "coherent")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(capture_against_embree, coherent, "coherent")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(capture_against_embree, cranley_patterson, "cranley-patterson")
     ->Iterations(1)
     ->UseManualTime()

@@ -15,7 +15,8 @@ namespace {
 /// A trace file on disk for the life of the program.
 class TraceFile {
 public:
-    TraceFile() : path_(std::filesystem::temp_directory_path() / ("raycache_replay_" + std::to_string(getpid()) + ".rct")) {
+    TraceFile()
+        : path_(std::filesystem::temp_directory_path() / ("raycache_replay_" + std::to_string(getpid()) + ".rct")) {
         tracer::write_capture(*make_capture("cranley-patterson"), path_.string(), {});
     }
     ~TraceFile() { std::filesystem::remove(path_); }
@@ -80,7 +81,10 @@ void replay(benchmark::State& state, const char* gpu_name, bool decoded) {
 }
 
 BENCHMARK(decode)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(replay, gtx_980_ti, "gtx-980-ti", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, gtx_980_ti, "gtx-980-ti", true)
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay, h100, "h100", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay, gtx_980_ti_from_file, "gtx-980-ti", false)
     ->Iterations(1)

@@ -24,7 +24,8 @@ void run(const Options& o) {
     const auto limit = o.threads.apply();
     const auto scene = o.scene.prepare();
     const tracer::Capture capture(*scene, settings);
-    ProgressBar bar("capture", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(), "rays");
+    ProgressBar bar("capture", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(),
+                    "rays");
     tracer::write_capture(capture, o.output, [&](std::uint64_t warps, std::uint64_t rays) { bar.add(warps, rays); });
 }
 
@@ -35,7 +36,8 @@ void add_capture(CLI::App& app) {
     CLI::App* command = app.add_subcommand("capture", "Trace a scene in warps and write every access to a trace file");
     o->scene.add(*command, true);
     command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
-    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")->capture_default_str();
+    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
+        ->capture_default_str();
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
     command->add_option("--spp", o->spp, "N, the size of the sample set; it sets mu")->capture_default_str();
     o->sampling.add_launches(*command);
@@ -45,7 +47,8 @@ void add_capture(CLI::App& app) {
     command->footer(
         "Examples:\n"
         "  raycache capture courtyard --strategy micro-jitter --spp 1024 -o mj.rct\n"
-        "  raycache capture sponza.glb --strategy cranley-patterson --sequence halton --spp 1024 --trace-samples 4 -o cp.rct");
+        "  raycache capture sponza.glb --strategy cranley-patterson --sequence halton --spp 1024 --trace-samples 4 -o "
+        "cp.rct");
     command->callback([o] { run(*o); });
 }
 

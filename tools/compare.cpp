@@ -52,12 +52,19 @@ void run(const Options& o) {
 
 void add_compare(CLI::App& app) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("compare", "Compare strategies, from trace files or (fused, no files) from a scene");
+    CLI::App* command =
+        app.add_subcommand("compare", "Compare strategies, from trace files or (fused, no files) from a scene");
     command->add_option("TRACES", o->traces, "trace files");
     o->scene.add(*command, false);
-    command->add_option("--strategy", o->strategies, "decorrelations, separated by commas")->delimiter(',')->capture_default_str();
-    command->add_option("--sequence", o->sequences, "sequences, separated by commas")->delimiter(',')->capture_default_str();
-    command->add_option("--spp", o->spp, "sizes N of the sample set, separated by commas")->delimiter(',')->capture_default_str();
+    command->add_option("--strategy", o->strategies, "decorrelations, separated by commas")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--sequence", o->sequences, "sequences, separated by commas")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--spp", o->spp, "sizes N of the sample set, separated by commas")
+        ->delimiter(',')
+        ->capture_default_str();
     o->sampling.add_launches(*command);
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
@@ -66,7 +73,8 @@ void add_compare(CLI::App& app) {
     command->footer(
         "Examples:\n"
         "  raycache compare cp.rct mj.rct coherent.rct --gpu gtx-980-ti --gpu h100\n"
-        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 --gpu gtx-980-ti\n"
+        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 "
+        "--gpu gtx-980-ti\n"
         "  raycache compare --scene sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv");
     command->callback([o] { run(*o); });
 }

@@ -19,9 +19,12 @@ struct Options {
 
 const char* kind_name(traces::ObjectKind kind) {
     switch (kind) {
-        case traces::ObjectKind::node: return "node";
-        case traces::ObjectKind::triangle: return "triangle";
-        case traces::ObjectKind::texel: return "texel";
+        case traces::ObjectKind::node:
+            return "node";
+        case traces::ObjectKind::triangle:
+            return "triangle";
+        case traces::ObjectKind::texel:
+            return "texel";
     }
     return "?";
 }
@@ -62,9 +65,10 @@ nlohmann::ordered_json describe(const traces::Reader& reader, const Totals& tota
     out["lane accesses"] = totals.lane_accesses;
     out["blocks"] = reader.blocks().size();
     out["file bytes"] = reader.file_bytes();
-    out["bytes per ray"] = totals.rays == 0 ? nlohmann::ordered_json(nullptr)
-                                            : nlohmann::ordered_json(static_cast<double>(reader.file_bytes()) /
-                                                                     static_cast<double>(totals.rays));
+    out["bytes per ray"] =
+        totals.rays == 0
+            ? nlohmann::ordered_json(nullptr)
+            : nlohmann::ordered_json(static_cast<double>(reader.file_bytes()) / static_cast<double>(totals.rays));
     return out;
 }
 
@@ -73,9 +77,10 @@ std::string as_text(const nlohmann::ordered_json& description) {
     for (const auto& [key, value] : description.items()) {
         if (key == "regions") {
             for (const auto& r : value)
-                out += fmt::format("{:<18}{} x {} of {} B, stride {} B, at {}\n", "region", r["count"].get<std::uint64_t>(),
-                                   r["kind"].get<std::string>(), r["element bytes"].get<std::uint32_t>(),
-                                   r["stride"].get<std::uint32_t>(), r["base"].get<std::string>());
+                out += fmt::format("{:<18}{} x {} of {} B, stride {} B, at {}\n", "region",
+                                   r["count"].get<std::uint64_t>(), r["kind"].get<std::string>(),
+                                   r["element bytes"].get<std::uint32_t>(), r["stride"].get<std::uint32_t>(),
+                                   r["base"].get<std::string>());
         } else if (value.is_string()) {
             if (!value.get<std::string>().empty()) out += fmt::format("{:<18}{}\n", key, value.get<std::string>());
         } else if (value.is_array()) {

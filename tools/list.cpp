@@ -8,10 +8,10 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
-#include "traces/error.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -35,7 +35,8 @@ std::vector<Topic> all_topics() {
     return {{"strategies", entries_of(tracer::decorrelations())},
             {"sequences", entries_of(tracer::sequences())},
             {"gpus", entries_of(cachesim::gpu_presets())},
-            {"layouts", {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
+            {"layouts",
+             {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
             {"thread-maps",
              {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
               {"samples", "a warp = one pixel, 32 consecutive sample indices"}}},
@@ -73,7 +74,8 @@ void run(const Options& o) {
 
 void add_list(CLI::App& app) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("list", "List strategies, sequences, GPUs, layouts, thread maps, built-in scenes");
+    CLI::App* command =
+        app.add_subcommand("list", "List strategies, sequences, GPUs, layouts, thread maps, built-in scenes");
     command->add_option("TOPIC", o->topic, "strategies, sequences, gpus, layouts, thread-maps or scenes; default: all");
     command->add_flag("--json", o->json, "print JSON");
     command->footer("Examples:\n  raycache list\n  raycache list gpus --json");

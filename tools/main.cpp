@@ -10,12 +10,14 @@
 
 int main(int argc, char** argv) {
     using namespace raycache;
-    CLI::App app{"Explains why one sampling strategy makes GPU ray tracing faster than another, without a GPU.", "raycache"};
+    CLI::App app{"Explains why one sampling strategy makes GPU ray tracing faster than another, without a GPU.",
+                 "raycache"};
     app.set_version_flag("--version", tools::program_name());
     app.require_subcommand(1);
     app.footer(
         "Examples:\n"
-        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 64 --gpu gtx-980-ti\n"
+        "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 64 --gpu "
+        "gtx-980-ti\n"
         "  raycache render courtyard --spp 16 -o courtyard.png\n"
         "  raycache compare --help");
     tools::add_render(app);

@@ -58,10 +58,10 @@ Resolution parse_resolution(const std::string& text) {
     const char* end = text.data() + text.size();
     const auto [cross, error] = std::from_chars(text.data(), end, r.width);
     const bool separated = error == std::errc{} && cross != end && *cross == 'x';
-    const auto [stop, second_error] =
-        separated ? std::from_chars(cross + 1, end, r.height) : std::from_chars_result{cross, std::errc::invalid_argument};
-    if (second_error != std::errc{} || stop != end || r.width == 0 || r.height == 0 || r.width > tracer::max_resolution ||
-        r.height > tracer::max_resolution)
+    const auto [stop, second_error] = separated ? std::from_chars(cross + 1, end, r.height)
+                                                : std::from_chars_result{cross, std::errc::invalid_argument};
+    if (second_error != std::errc{} || stop != end || r.width == 0 || r.height == 0 ||
+        r.width > tracer::max_resolution || r.height > tracer::max_resolution)
         throw UsageError(fmt::format("--resolution '{}'; expected WIDTHxHEIGHT such as 512x512, each 1 to {}", text,
                                      tracer::max_resolution));
     return r;
@@ -119,7 +119,8 @@ void SamplingOptions::add_strategy(CLI::App& app) {
     app.add_option("--k", k, "K of micro-jitter's mu = min(1, K * N^(-1/s))")->capture_default_str();
     app.add_option("--s", s, "s of the same formula: dimensions sampled jointly")->capture_default_str();
     app.add_option("--mu", mu, "mu itself, 0 to 1, or 'cycles': Blender's one-sided 4/sqrt(N); overrides --k and --s");
-    app.add_option("--seed", seed, "seed of jitter, random numbers and the choice of sample indices")->capture_default_str();
+    app.add_option("--seed", seed, "seed of jitter, random numbers and the choice of sample indices")
+        ->capture_default_str();
 }
 
 void SamplingOptions::add_launches(CLI::App& app) {
@@ -178,10 +179,13 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
         ->required()
         ->delimiter(',');
     app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's");
-    app.add_option("--by", by, "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
+    app.add_option(
+           "--by", by,
+           "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
         ->capture_default_str();
     if (with_baseline)
-        app.add_option("--baseline", baseline, "strategy that ratios refer to; default: cranley-patterson where it is compared");
+        app.add_option("--baseline", baseline,
+                       "strategy that ratios refer to; default: cranley-patterson where it is compared");
     app.add_flag("--json", json, "print JSON");
     app.add_flag("--csv", csv, "print CSV");
     app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
@@ -202,7 +206,8 @@ void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
     // Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
     const std::string usual = "cranley-patterson";
     const auto is_usual = [&](const cachesim::Series& s) { return s.strategy == usual; };
-    const bool has_usual = std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
+    const bool has_usual =
+        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
     const cachesim::Report report =
         cachesim::make_report(series, baseline.empty() && has_usual ? usual : baseline, parse_by(by));
     if (!save.empty()) {
@@ -219,7 +224,8 @@ void ThreadOptions::add(CLI::App& app) {
 }
 
 std::shared_ptr<void> ThreadOptions::apply() const {
-    const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : std::max(1U, std::thread::hardware_concurrency());
+    const unsigned wanted =
+        threads > 0 ? static_cast<unsigned>(threads) : std::max(1U, std::thread::hardware_concurrency());
     return std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, wanted);
 }
 

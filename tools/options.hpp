@@ -41,7 +41,8 @@ struct SamplingOptions {
     void add_strategy(CLI::App&);  ///< --k --s --mu --seed
     void add_launches(CLI::App&);  ///< --trace-samples --thread-map
 
-    tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation, std::uint64_t spp) const;
+    tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation,
+                                      std::uint64_t spp) const;
     tracer::CaptureSettings capture(const SceneOptions&, const std::string& sequence, const std::string& decorrelation,
                                     std::uint64_t spp) const;
 };

@@ -7,8 +7,8 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/options.hpp"
-#include "traces/error.hpp"
 #include "tracer/render.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -22,8 +22,8 @@ struct Options {
     float exposure = 0;
 };
 
-/// Stops that bring the log-average luminance to middle grey (Reinhard et al. 2002, eq. 1), taken over means of 16x16 pixels: the
-/// black pixels of a noisy picture say nothing about its brightness.
+/// Stops that bring the log-average luminance to middle grey (Reinhard et al. 2002, eq. 1), taken over means of 16x16
+/// pixels: the black pixels of a noisy picture say nothing about its brightness.
 float automatic_exposure(const tracer::Image& image) {
     constexpr std::uint32_t block = 16;
     constexpr double darkest = 1e-4, middle_grey = 0.18;
@@ -31,7 +31,8 @@ float automatic_exposure(const tracer::Image& image) {
     std::uint64_t blocks = 0;
     for (std::uint32_t top = 0; top < image.height; top += block)
         for (std::uint32_t left = 0; left < image.width; left += block) {
-            const std::uint32_t bottom = std::min(top + block, image.height), right = std::min(left + block, image.width);
+            const std::uint32_t bottom = std::min(top + block, image.height),
+                                right = std::min(left + block, image.width);
             double sum = 0;
             for (std::uint32_t y = top; y < bottom; ++y)
                 for (std::uint32_t x = left; x < right; ++x)
@@ -72,14 +73,16 @@ void add_render(CLI::App& app) {
     auto o = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
     o->scene.add(*command, true);
-    command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")->required();
+    command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")
+        ->required();
     command->add_option("--spp", o->spp, "samples per pixel")->capture_default_str();
-    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")->capture_default_str();
+    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
+        ->capture_default_str();
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
-    const CLI::Option* exposure =
-        command->add_option("--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
+    const CLI::Option* exposure = command->add_option(
+        "--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
     o->threads.add(*command);
     command->footer(
         "Examples:\n"

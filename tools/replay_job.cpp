@@ -71,7 +71,8 @@ std::vector<cachesim::Series> replay(const std::vector<Source>& sources, const s
 
 }  // namespace
 
-std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths, const std::vector<cachesim::Gpu>& gpus) {
+std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths,
+                                           const std::vector<cachesim::Gpu>& gpus) {
     std::vector<std::unique_ptr<traces::Reader>> readers;
     std::vector<Source> sources;
     for (const std::string& path : paths) {

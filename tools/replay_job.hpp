@@ -1,5 +1,5 @@
-// From traces to series: every launch of every trace, through every GPU. A trace is a file, or a capture made on the fly; both
-// hand the same warps to the same replay, so both give the same numbers.
+// From traces to series: every launch of every trace, through every GPU. A trace is a file, or a capture made on the
+// fly; both hand the same warps to the same replay, so both give the same numbers.
 #pragma once
 
 #include <memory>

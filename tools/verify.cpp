@@ -21,12 +21,18 @@ void run(const Options& o) {
     std::string text;
     if (o.recovered.empty()) {
         const traces::VerifyResult r = traces::verify(o.path);
-        out = {{"blocks", r.blocks}, {"warps", r.warps}, {"records", r.records}, {"lane accesses", r.lane_accesses}, {"rays", r.rays}};
-        text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n", o.path, r.blocks, r.warps,
-                           r.records, r.lane_accesses, r.rays);
+        out = {{"blocks", r.blocks},
+               {"warps", r.warps},
+               {"records", r.records},
+               {"lane accesses", r.lane_accesses},
+               {"rays", r.rays}};
+        text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n", o.path, r.blocks,
+                           r.warps, r.records, r.lane_accesses, r.rays);
     } else {
         const traces::RecoverResult r = traces::recover(o.path, o.recovered);
-        out = {{"launches kept", r.launches_kept}, {"launches lost", r.launches_lost}, {"blocks kept", r.blocks_kept},
+        out = {{"launches kept", r.launches_kept},
+               {"launches lost", r.launches_lost},
+               {"blocks kept", r.blocks_kept},
                {"blocks lost", r.blocks_lost}};
         text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", o.recovered, r.launches_kept,
                            r.launches_kept + r.launches_lost, r.blocks_kept);

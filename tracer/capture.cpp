@@ -7,10 +7,10 @@
 
 #include <algorithm>
 
-#include "traces/error.hpp"
-#include "traces/writer.hpp"
 #include "tracer/simt/recorder.hpp"
 #include "tracer/simt/warp_traversal.hpp"
+#include "traces/error.hpp"
+#include "traces/writer.hpp"
 
 namespace raycache::tracer {
 namespace {
@@ -101,8 +101,8 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     header_.warps_per_launch = grid_.warps();
     for (const std::uint32_t first : header_.launches) {
         auto& points = base_points_.emplace_back();
-        const std::uint64_t end =
-            std::min<std::uint64_t>(std::uint64_t{first} + grid_.samples_per_launch(), settings.strategy.parameters.spp);
+        const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{first} + grid_.samples_per_launch(),
+                                                          settings.strategy.parameters.spp);
         for (std::uint64_t i = first; i < end; ++i) points.push_back(strategy_.base_point(i));
     }
 }
@@ -171,9 +171,10 @@ void write_capture(const Capture& capture, const std::string& path, const Progre
         if (progress) progress(block.warps, block.rays);
     };
     const auto tokens = static_cast<std::size_t>(2 * tbb::this_task_arena::max_concurrency());
-    tbb::parallel_pipeline(tokens, tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, next) &
-                                       tbb::make_filter<Range, traces::Block>(tbb::filter_mode::parallel, trace) &
-                                       tbb::make_filter<traces::Block, void>(tbb::filter_mode::serial_in_order, append));
+    tbb::parallel_pipeline(tokens,
+                           tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, next) &
+                               tbb::make_filter<Range, traces::Block>(tbb::filter_mode::parallel, trace) &
+                               tbb::make_filter<traces::Block, void>(tbb::filter_mode::serial_in_order, append));
     writer.finish();
 }
 

@@ -1,5 +1,5 @@
-// The tracer's whole pipeline: scene -> BVH -> sampling -> paths -> SIMT -> trace. One call gives the trace of one warp; who
-// asks for warps in order gets a launch, in a file or straight into a replay.
+// The tracer's whole pipeline: scene -> BVH -> sampling -> paths -> SIMT -> trace. One call gives the trace of one
+// warp; who asks for warps in order gets a launch, in a file or straight into a replay.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "traces/header.hpp"
-#include "traces/record.hpp"
 #include "tracer/paths/path_integrator.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "traces/header.hpp"
+#include "traces/record.hpp"
 
 namespace raycache::tracer {
 
@@ -21,8 +21,8 @@ struct CaptureSettings {
     std::uint32_t width = 512, height = 512;  ///< pixels, 1 … 16384 each
     PathSettings paths;
     StrategySettings strategy;  ///< strategy.parameters.spp is N
-    /// How many of the N sample indices are traced: a seeded random subset, ascending, the same for every strategy with this N.
-    /// With the `samples` thread map whole groups of 32 consecutive indices are chosen instead, rounded up.
+    /// How many of the N sample indices are traced: a seeded random subset, ascending, the same for every strategy with
+    /// this N. With the `samples` thread map whole groups of 32 consecutive indices are chosen instead, rounded up.
     std::uint64_t trace_samples = 8;
     ThreadMap thread_map = ThreadMap::tile;
     std::string program, command;  ///< for the provenance
@@ -45,11 +45,13 @@ public:
     class Worker;
     std::unique_ptr<Worker, void (*)(Worker*)> make_worker() const;
 
-    /// Traces one warp, replacing `out`. Thread-safe with one worker per thread; the result does not depend on the worker's past.
+    /// Traces one warp, replacing `out`. Thread-safe with one worker per thread; the result does not depend on the
+    /// worker's past.
     void trace_warp(Worker&, std::uint32_t launch, std::uint32_t warp, traces::WarpTrace& out) const;
 
     /// The lanes' jobs of a warp, for programs that walk the same rays by other means (benchmarks).
-    std::uint32_t lane_jobs(std::uint32_t launch, std::uint32_t warp, std::array<PathLane, traces::warp_lanes>& out) const;
+    std::uint32_t lane_jobs(std::uint32_t launch, std::uint32_t warp,
+                            std::array<PathLane, traces::warp_lanes>& out) const;
 
     const PreparedScene& scene() const { return scene_; }
     const SamplingStrategy& strategy() const { return strategy_; }
@@ -69,7 +71,8 @@ private:
 /// Called from any thread with what was finished since the last call.
 using Progress = std::function<void(std::uint64_t warps, std::uint64_t rays)>;
 
-/// Traces every launch on all threads of the current TBB arena and writes the file. Its bytes do not depend on the number of threads.
+/// Traces every launch on all threads of the current TBB arena and writes the file. Its bytes do not depend on the
+/// number of threads.
 void write_capture(const Capture&, const std::string& path, const Progress&);
 
 }  // namespace raycache::tracer

@@ -12,7 +12,10 @@ namespace raycache::tracer {
 class PreparedScene {
 public:
     PreparedScene(Scene scene, const BvhSettings& settings)
-        : scene_(std::move(scene)), bvh_(make_bvh2(build_bvh(scene_, settings), scene_)), lights_(scene_), texels_(scene_) {}
+        : scene_(std::move(scene)),
+          bvh_(make_bvh2(build_bvh(scene_, settings), scene_)),
+          lights_(scene_),
+          texels_(scene_) {}
     PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
     PreparedScene& operator=(const PreparedScene&) = delete;
 

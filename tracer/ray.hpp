@@ -19,7 +19,7 @@ inline constexpr std::uint32_t no_triangle = 0xffffffffU;
 
 struct Hit {
     float t = std::numeric_limits<float>::infinity();
-    float u = 0, v = 0;  ///< barycentric weights of the second and third vertex
+    float u = 0, v = 0;                    ///< barycentric weights of the second and third vertex
     std::uint32_t triangle = no_triangle;  ///< scene triangle
 
     bool found() const { return triangle != no_triangle; }

@@ -14,7 +14,8 @@ namespace raycache::tracer {
 namespace {
 
 struct Worker {
-    Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy, const PathSettings& paths)
+    Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy,
+           const PathSettings& paths)
         : traversal(scene.scene(), scene.bvh(), scene.texels(), recorder),
           integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal) {}
     Worker(const Worker&) = delete;  // its parts point at each other

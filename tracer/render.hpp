@@ -17,8 +17,8 @@ struct RenderSettings {
     StrategySettings strategy;  ///< all N = strategy.parameters.spp samples are taken
 };
 
-/// Runs on all threads of the current TBB arena; the picture does not depend on their number. `progress` is called from any
-/// thread with the number of paths finished since the last call.
+/// Runs on all threads of the current TBB arena; the picture does not depend on their number. `progress` is called from
+/// any thread with the number of paths finished since the last call.
 Image render(const PreparedScene&, const RenderSettings&, const std::function<void(std::uint64_t paths)>& progress);
 
 }  // namespace raycache::tracer

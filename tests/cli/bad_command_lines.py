@@ -44,9 +44,6 @@ class BadCommandLines(ProgramTest):
                 self.refuses(2, *COMPARE, "--spp", "16," + text)
         self.refuses(2, *CAPTURE, "--spp", "4294967297")
 
-    def test_more_samples_to_trace_than_there_are(self):
-        self.refuses(2, *CAPTURE, "--spp", "4", "--trace-samples", "5", mentions=["5", "4"])
-
     def test_other_numbers_that_are_out_of_range(self):
         for option, values in (("--bounces", ("-1", "65", "x")), ("--threads", ("0", "-2", "two", "100000")),
                                ("--k", ("-1", "nan", "inf", "k")), ("--s", ("0", "-1", "x")),

@@ -4,7 +4,7 @@ import signal
 import subprocess
 import time
 
-from support import GPU, LAUNCHES, RAYCACHE, SCENE, ProgramTest, main
+from support import GPU, LAUNCHES, PICTURE, RAYCACHE, SCENE, ProgramTest, main
 
 FORMATS = ([], ["--json"], ["--csv"])
 
@@ -105,6 +105,12 @@ class Traces(ProgramTest):
                              "coherent,cranley-patterson,micro-jitter", *GPU, "--json").json["rows"]
         self.assertEqual(len({tuple(row["samples"]) for row in rows}), 1)
         self.assertTrue(all(0 <= i < 1000 for i in rows[0]["samples"]))
+
+    def test_no_more_samples_are_traced_than_there_are(self):
+        for spp, wanted in ((1, 8), (4, 5)):
+            row, = self.warns("compare", "--scene", *SCENE, *PICTURE, "--spp", spp, "--trace-samples", wanted, "--strategy",
+                              "cranley-patterson", *GPU, "--json").json["rows"]
+            self.assertEqual(row["samples"], list(range(spp)))
 
     def test_micro_jitter_of_one_sample_is_cranley_patterson_in_its_spread(self):
         # N = 1 gives mu = 1: the jitter covers the whole interval, so both are uniform rotations.

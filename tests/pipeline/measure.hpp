@@ -45,8 +45,8 @@ struct Traffic {
     double dram_bytes = 0;  ///< missed L2 too
 };
 
-inline tracer::CaptureSettings capture_settings(const std::string& strategy, const std::string& sequence, std::uint64_t spp,
-                                                std::uint64_t trace_samples) {
+inline tracer::CaptureSettings capture_settings(const std::string& strategy, const std::string& sequence,
+                                                std::uint64_t spp, std::uint64_t trace_samples) {
     tracer::CaptureSettings settings;
     settings.width = settings.height = 256;
     settings.trace_samples = trace_samples;

@@ -1,4 +1,5 @@
-// The claim that started the project, as tests: micro-jitter against Cranley–Patterson at equal N and equal sample indices.
+// The claim that started the project, as tests: micro-jitter against Cranley–Patterson at equal N and equal sample
+// indices.
 #include <boost/math/distributions/students_t.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -29,7 +30,7 @@ double t_quantile(double confidence, std::size_t samples) {
 }
 
 /// True if a < b with 99 % confidence, paired by index.
-bool lower(const std::vector<Traffic>& a, const std::vector<Traffic>& b, double Traffic::* what) {
+bool lower(const std::vector<Traffic>& a, const std::vector<Traffic>& b, double Traffic::*what) {
     std::vector<double> difference;
     for (std::size_t i = 0; i < a.size(); ++i) difference.push_back(a[i].*what - b[i].*what);
     const MeanAndError d = summarise(difference);
@@ -37,7 +38,7 @@ bool lower(const std::vector<Traffic>& a, const std::vector<Traffic>& b, double 
     return d.mean < -t_quantile(0.99, a.size()) * d.standard_error;
 }
 
-double mean(const std::vector<Traffic>& traffic, double Traffic::* what) {
+double mean(const std::vector<Traffic>& traffic, double Traffic::*what) {
     double sum = 0;
     for (const Traffic& t : traffic) sum += t.*what;
     return sum / static_cast<double>(traffic.size());
@@ -82,8 +83,11 @@ TEST_CASE("with one sample and K = 1 micro-jitter saves nothing", "[slow]") {
 
 TEST_CASE("at N = 16384 micro-jitter lies nearer to coherent than to cranley-patterson", "[slow]") {
     const tracer::PreparedScene& scene = *find_scene("courtyard");
-    const auto traffic = [&](const char* strategy) { return measure(scene, capture_settings(strategy, "sobol", 16384, 6)); };
-    const auto coherent = traffic("coherent"), rotated = traffic("cranley-patterson"), jittered = traffic("micro-jitter");
+    const auto traffic = [&](const char* strategy) {
+        return measure(scene, capture_settings(strategy, "sobol", 16384, 6));
+    };
+    const auto coherent = traffic("coherent"), rotated = traffic("cranley-patterson"),
+               jittered = traffic("micro-jitter");
     for (const auto what : {&Traffic::l2_bytes, &Traffic::dram_bytes}) {
         CHECK(mean(jittered, what) >= mean(coherent, what));
         CHECK(mean(jittered, what) - mean(coherent, what) < mean(rotated, what) - mean(jittered, what));

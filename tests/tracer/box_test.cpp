@@ -39,8 +39,8 @@ Found hits(const Box& first, const Box& second, const Ray& ray) {
     return found(node_of(first, second), prepared);
 }
 
-/// Whether the exact ray meets the closed box between t_min and t_max; long double holds a difference of floats of like size
-/// and its quotient with an error far below that of float.
+/// Whether the exact ray meets the closed box between t_min and t_max; long double holds a difference of floats of like
+/// size and its quotient with an error far below that of float.
 bool enters(const Box& box, const Ray& ray) {
     long double low = ray.t_min, high = ray.t_max;
     for (int axis = 0; axis < 3; ++axis) {
@@ -68,12 +68,18 @@ Box box_of(Vec3 a, Vec3 b) {
 float awkward(Random& random) {
     const float sign = random.below(2) == 0 ? 1.0F : -1.0F;
     switch (random.below(8)) {
-        case 0: return sign * 0.0F;
-        case 1: return sign;
-        case 2: return sign * std::ldexp(1.0F, static_cast<int>(random.below(40)) - 20);
-        case 3: return sign * 1e5F * random.unit();
-        case 4: return sign * 1e-6F * random.unit();
-        default: return sign * random.unit();
+        case 0:
+            return sign * 0.0F;
+        case 1:
+            return sign;
+        case 2:
+            return sign * std::ldexp(1.0F, static_cast<int>(random.below(40)) - 20);
+        case 3:
+            return sign * 1e5F * random.unit();
+        case 4:
+            return sign * 1e-6F * random.unit();
+        default:
+            return sign * random.unit();
     }
 }
 
@@ -102,7 +108,8 @@ TEST_CASE("box test: every box that the exact ray enters is hit, for four millio
         Ray ray;
         ray.origin = {random.between(-4, 4), random.between(-4, 4), random.between(-4, 4)};
         // Towards a corner, a point of an edge or a point of a face.
-        const Vec3 target{random.below(2) == 0 ? box.lower.x : box.upper.x, random.below(2) == 0 ? box.lower.y : box.upper.y,
+        const Vec3 target{random.below(2) == 0 ? box.lower.x : box.upper.x,
+                          random.below(2) == 0 ? box.lower.y : box.upper.y,
                           random.below(2) == 0 ? box.lower.z : random.between(box.lower.z, box.upper.z)};
         ray.direction = target - ray.origin;
         if (random.below(2) == 0) ray.direction = normalize(ray.direction);
@@ -159,14 +166,15 @@ TEST_CASE("box test: random rays hit what the exact ray enters and little else")
 }
 
 TEST_CASE("box test: the worst roundings on both sides do not lose a box") {
-    // Found by search: the exact ray passes the box's edge inside by less than 1e-9, and the near distance comes out more than
-    // 4 * 2^-24 above the far one.
+    // Found by search: the exact ray passes the box's edge inside by less than 1e-9, and the near distance comes out
+    // more than 4 * 2^-24 above the far one.
     struct Worst {
         float ox, oy, dx, dy, px, py;
     };
-    for (const Worst& w : {Worst{-0x1.0d97e8p+0F, -0x1.21e958p+0F, 0x1.c82634p-1F, 0x1.e501dp-1F, 0x1.db48ep-5F, 0x1.90f3ap-5F},
-                           Worst{-0x1.037d3p+0F, -0x1.16668ep+0F, 0x1.b4dabp-1F, 0x1.d34c74p-1F, 0x1.af3286p-7F, 0x1.634a74p-7F},
-                           Worst{-0x1.022144p+0F, -0x1.140102p+0F, 0x1.c4fccap-1F, 0x1.cdf42ap-1F, 0x1.00b17p-4F, 0x1.cc517cp-7F}}) {
+    for (const Worst& w :
+         {Worst{-0x1.0d97e8p+0F, -0x1.21e958p+0F, 0x1.c82634p-1F, 0x1.e501dp-1F, 0x1.db48ep-5F, 0x1.90f3ap-5F},
+          Worst{-0x1.037d3p+0F, -0x1.16668ep+0F, 0x1.b4dabp-1F, 0x1.d34c74p-1F, 0x1.af3286p-7F, 0x1.634a74p-7F},
+          Worst{-0x1.022144p+0F, -0x1.140102p+0F, 0x1.c4fccap-1F, 0x1.cdf42ap-1F, 0x1.00b17p-4F, 0x1.cc517cp-7F}}) {
         const Box box{{w.px, w.py - 1, -1}, {w.px + 1, w.py, 1}};
         Ray ray;
         ray.origin = {w.ox, w.oy, 0};
@@ -250,7 +258,7 @@ TEST_CASE("box test: a huge scene and a tiny one lose no box") {
             const Box box = box_of(at, at + random.in({{0, 0, 0}, {0.1F, 0.1F, 0}}) * scale);
             Ray ray;
             ray.origin = random.in({{-1, -1, -1}, {1, 1, 1}}) * scale;
-            ray.direction = normalize((random.in(box) - ray.origin) / scale);
+            ray.direction = normalize((random.in(box)-ray.origin) / scale);
             missed += enters(box, ray) && hits(box, Box{}, ray).mask != 1;
         }
         INFO("scale " << scale);
@@ -269,7 +277,8 @@ TEST_CASE("box test: directions with denormal components lose no box") {
         (i % 3 == 0 ? ray.direction.x : i % 3 == 1 ? ray.direction.y : ray.direction.z) = x;
         const Vec3 at = random.in({{-1, -1, -1}, {1, 1, 1}});
         const Box box = box_of(at, at + random.in({{0, 0, 0}, {1, 1, 1}}));
-        ray.origin = random.below(2) == 0 ? box.lower - ray.direction * random.unit() : random.in({{-1, -1, -1}, {1, 1, 1}});
+        ray.origin =
+            random.below(2) == 0 ? box.lower - ray.direction * random.unit() : random.in({{-1, -1, -1}, {1, 1, 1}});
         missed += enters(box, ray) && hits(box, Box{}, ray).mask != 1;
     }
     CHECK(missed == 0);

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "test_rays.hpp"
-#include "traces/error.hpp"
 #include "tracer/bvh/bvh.hpp"
+#include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;
@@ -182,7 +182,8 @@ TEST_CASE("bvh: a thousand triangles on one spot make a tree of bounded depth") 
 }
 
 TEST_CASE("bvh: scenes times 1e-6 and 1e6, moved by 1e5, and up to the largest coordinate build sound trees") {
-    for (const auto& [scale, offset] : {std::pair{1e-6F, 0.0F}, {1e6F, 0.0F}, {1.0F, 1e5F}, {1e-6F, 1e5F}, {4e17F, 0.0F}}) {
+    for (const auto& [scale, offset] :
+         {std::pair{1e-6F, 0.0F}, {1e6F, 0.0F}, {1.0F, 1e5F}, {1e-6F, 1e5F}, {4e17F, 0.0F}}) {
         INFO("scale " << scale << " offset " << offset);
         const Scene scene = moved(soup(2000, 0.2F, 7), scale, {offset, -offset, offset});
         const Bvh bvh = build_bvh(scene, {});

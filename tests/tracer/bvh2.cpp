@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "test_rays.hpp"
-#include "traces/error.hpp"
 #include "tracer/bvh/layouts/bvh2.hpp"
+#include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;

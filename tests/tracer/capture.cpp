@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "test_rays.hpp"
-#include "traces/error.hpp"
 #include "tracer/capture.hpp"
+#include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;

@@ -1,5 +1,5 @@
-// The traversal against Embree's robust mode where rounding is worst: axis-parallel directions, origins on the geometry, tiny, huge and
-// far-off scenes, degenerate and duplicate triangles.
+// The traversal against Embree's robust mode where rounding is worst: axis-parallel directions, origins on the
+// geometry, tiny, huge and far-off scenes, degenerate and duplicate triangles.
 #include <catch2/catch.hpp>
 
 #include "embree_comparison.hpp"
@@ -60,8 +60,10 @@ void check(const Scene& scene, std::span<const Ray> rays, const BvhSettings& set
 /// A box of 12 triangles around the origin, its coordinates powers of two.
 Scene cube() {
     Scene scene = quad({-2, -1, -1}, {-2, 1, -1}, {2, 1, -1}, {2, -1, -1});
-    for (const Scene& side : {quad({-2, -1, 1}, {2, -1, 1}, {2, 1, 1}, {-2, 1, 1}), quad({-2, -1, -1}, {2, -1, -1}, {2, -1, 1}, {-2, -1, 1}),
-                              quad({-2, 1, -1}, {-2, 1, 1}, {2, 1, 1}, {2, 1, -1}), quad({-2, -1, -1}, {-2, -1, 1}, {-2, 1, 1}, {-2, 1, -1}),
+    for (const Scene& side : {quad({-2, -1, 1}, {2, -1, 1}, {2, 1, 1}, {-2, 1, 1}),
+                              quad({-2, -1, -1}, {2, -1, -1}, {2, -1, 1}, {-2, -1, 1}),
+                              quad({-2, 1, -1}, {-2, 1, 1}, {2, 1, 1}, {2, 1, -1}),
+                              quad({-2, -1, -1}, {-2, -1, 1}, {-2, 1, 1}, {-2, 1, -1}),
                               quad({2, -1, -1}, {2, 1, -1}, {2, 1, 1}, {2, -1, 1})})
         append(scene, side);
     return scene;
@@ -79,7 +81,8 @@ std::vector<Ray> mixed_rays(const Scene& scene, std::size_t count) {
 TEST_CASE("embree: all sign and zero combinations of the direction, from inside, from planes, edges and vertices") {
     for (const Scene& scene : {cube(), icosphere(1), soup(50, 0.8F, 3)}) {
         std::vector<Vec3> origins = points_on(scene);
-        for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{0.5F, 0.25F, -0.5F}, Vec3{5, 1, 1}, Vec3{-5, 0, 0}, Vec3{0, 7, -1}}) origins.push_back(p);
+        for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{0.5F, 0.25F, -0.5F}, Vec3{5, 1, 1}, Vec3{-5, 0, 0}, Vec3{0, 7, -1}})
+            origins.push_back(p);
         for (const float scale : {1.0F, 1e-3F, 1e3F}) check(scene, axis_rays(origins, scale));
     }
 }
@@ -114,7 +117,8 @@ TEST_CASE("embree: scenes times 1e-6 and 1e6, and moved by 1e5") {
 TEST_CASE("embree: a scene that rounding has collapsed to a point is never hit") {
     const Scene scene = moved(icosphere(1), 1e-6F, {1e5F, 1e5F, 1e5F});
     const PreparedScene prepared(Scene(scene), BvhSettings{});
-    for (const Hit& hit : closest_hits(prepared, random_rays({{99999, 99999, 99999}, {100001, 100001, 100001}}, 10000, 7)))
+    for (const Hit& hit :
+         closest_hits(prepared, random_rays({{99999, 99999, 99999}, {100001, 100001, 100001}}, 10000, 7)))
         REQUIRE_FALSE(hit.found());
 }
 
@@ -133,10 +137,17 @@ TEST_CASE("embree: degenerate triangles among sound ones") {
     for (int i = 0; i < 500; ++i) {
         const Vec3 a = random.in({{-1, -1, -1}, {1, 1, 1}}), b = random.in({{-1, -1, -1}, {1, 1, 1}});
         switch (i % 4) {
-            case 0: append(scene, mesh({a}, {0, 0, 0})); break;
-            case 1: append(scene, mesh({a, b}, {0, 1, 1})); break;
-            case 2: append(scene, mesh({a, b}, {0, 1, 0})); break;
-            default: append(scene, mesh({a, b, (a + b) * 0.5F}, {0, 1, 2}));
+            case 0:
+                append(scene, mesh({a}, {0, 0, 0}));
+                break;
+            case 1:
+                append(scene, mesh({a, b}, {0, 1, 1}));
+                break;
+            case 2:
+                append(scene, mesh({a, b}, {0, 1, 0}));
+                break;
+            default:
+                append(scene, mesh({a, b, (a + b) * 0.5F}, {0, 1, 2}));
         }
     }
     check(scene, mixed_rays(scene, 50000), {}, embree_share_on_slivers);
@@ -166,12 +177,23 @@ TEST_CASE("embree: t_min and t_max before, at and behind the hits") {
         if (!hits[i].found()) continue;
         const float t = hits[i].t;
         switch (random.below(6)) {
-            case 0: rays[i].t_max = t; break;
-            case 1: rays[i].t_max = std::nextafter(t, 0.0F); break;
-            case 2: rays[i].t_max = t * 0.9F; break;
-            case 3: rays[i].t_min = t; break;
-            case 4: rays[i].t_min = t * 1.1F; break;
-            default: rays[i].t_min = t * 0.5F, rays[i].t_max = t * 2;
+            case 0:
+                rays[i].t_max = t;
+                break;
+            case 1:
+                rays[i].t_max = std::nextafter(t, 0.0F);
+                break;
+            case 2:
+                rays[i].t_max = t * 0.9F;
+                break;
+            case 3:
+                rays[i].t_min = t;
+                break;
+            case 4:
+                rays[i].t_min = t * 1.1F;
+                break;
+            default:
+                rays[i].t_min = t * 0.5F, rays[i].t_max = t * 2;
         }
     }
     check(scene, rays);

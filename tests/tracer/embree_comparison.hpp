@@ -30,29 +30,30 @@ struct Comparison {
     }
     std::string text() const {
         return std::to_string(rays) + " rays, " + std::to_string(ties) + " ties, " + std::to_string(depths) +
-               " depths, " + std::to_string(excused) + " excused, " + std::to_string(ours_wrong) + " ours wrong, " + std::to_string(embree_wrong) +
-               " Embree wrong " + first_wrong;
+               " depths, " + std::to_string(excused) + " excused, " + std::to_string(ours_wrong) + " ours wrong, " +
+               std::to_string(embree_wrong) + " Embree wrong " + first_wrong;
     }
 };
 
 inline std::string describe(const Ray& r, const Hit& ours, const Hit& embree) {
     char text[512];
-    std::snprintf(text, sizeof text, "o %a %a %a d %a %a %a t %g..%g ours %d t=%.9g embree %d t=%.9g", double{r.origin.x},
-                  double{r.origin.y}, double{r.origin.z}, double{r.direction.x}, double{r.direction.y},
-                  double{r.direction.z}, double{r.t_min}, double{r.t_max}, static_cast<int>(ours.triangle),
-                  double{ours.t}, static_cast<int>(embree.triangle), double{embree.t});
+    std::snprintf(text, sizeof text, "o %a %a %a d %a %a %a t %g..%g ours %d t=%.9g embree %d t=%.9g",
+                  double{r.origin.x}, double{r.origin.y}, double{r.origin.z}, double{r.direction.x},
+                  double{r.direction.y}, double{r.direction.z}, double{r.t_min}, double{r.t_max},
+                  static_cast<int>(ours.triangle), double{ours.t}, static_cast<int>(embree.triangle), double{embree.t});
     return text;
 }
 
-inline Comparison compare_closest(const PreparedScene& scene, const EmbreeReference& embree, std::span<const Ray> rays) {
+inline Comparison compare_closest(const PreparedScene& scene, const EmbreeReference& embree,
+                                  std::span<const Ray> rays) {
     const std::vector<Hit> ours = closest_hits(scene, rays);
     Comparison out;
     out.rays = rays.size();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const Hit theirs = embree.intersect(rays[i]);
         if (!ours[i].found() && !theirs.found()) continue;
-        const bool same_distance = ours[i].found() && theirs.found() &&
-                                   std::fabs(ours[i].t - theirs.t) <= 4 * 0x1p-23F * std::fabs(theirs.t);
+        const bool same_distance =
+            ours[i].found() && theirs.found() && std::fabs(ours[i].t - theirs.t) <= 4 * 0x1p-23F * std::fabs(theirs.t);
         if (same_distance) {
             out.ties += ours[i].triangle != theirs.triangle;
             continue;
@@ -66,11 +67,11 @@ inline Comparison compare_closest(const PreparedScene& scene, const EmbreeRefere
         out.embree_wrong += right && !other;
         const auto inside = [&](const Hit& hit) {
             return hit.found() && std::any_of(candidates.begin(), candidates.end(), [&](const Crossing& c) {
-                return c.triangle == hit.triangle && c.sure();
-            });
+                       return c.triangle == hit.triangle && c.sure();
+                   });
         };
         if (right && other)
-            ++(ours[i].triangle == theirs.triangle         ? out.depths
+            ++(ours[i].triangle == theirs.triangle ? out.depths
                : inside(ours[i]) && inside(theirs) ? out.ties
                                                    : out.excused);
         if (!(right && other) && out.first_wrong.empty()) out.first_wrong = describe(rays[i], ours[i], theirs);
@@ -86,7 +87,8 @@ inline Comparison compare_any(const PreparedScene& scene, const EmbreeReference&
         const bool theirs = embree.occluded(rays[i]);
         if (ours[i] == theirs) continue;
         const auto candidates = crossings(scene, rays[i]);
-        const bool right = justified(candidates, rays[i], bool{ours[i]}), other = justified(candidates, rays[i], theirs);
+        const bool right = justified(candidates, rays[i], bool{ours[i]}),
+                   other = justified(candidates, rays[i], theirs);
         out.ours_wrong += !right;
         out.embree_wrong += right && !other;
         out.excused += right && other;

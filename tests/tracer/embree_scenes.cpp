@@ -10,8 +10,8 @@ using namespace raycache::tracer::test;
 
 namespace {
 
-/// Shares of rays about which two right answers may differ, as measured with a margin: rays as they come, and rays aimed
-/// at edges and vertices on purpose.
+/// Shares of rays about which two right answers may differ, as measured with a margin: rays as they come, and rays
+/// aimed at edges and vertices on purpose.
 constexpr double excused_share = 1e-5, excused_aimed_share = 0.1;
 
 Box widened(const Box& box) {

@@ -1,10 +1,10 @@
-// Which answers to a ray query are right within rounding? Decided in double arithmetic from the float triangles, without
-// the code under test but for the boxes of its tree, widened. Two watertight intersectors may disagree about a ray
-// that passes an edge closer than their rounding error, or about which of two surfaces at the same distance is in front. So the
-// judge says for each triangle whether the ray crosses it for sure, perhaps, or not, with stated bounds, and an answer is
-// justified if
-//   a hit:    its triangle is crossed perhaps, its t is right within the bound, and nothing sure lies in front beyond the bounds;
-//   a miss:   nothing is crossed for sure between t_min and t_max.
+// Which answers to a ray query are right within rounding? Decided in double arithmetic from the float triangles,
+// without the code under test but for the boxes of its tree, widened. Two watertight intersectors may disagree about a
+// ray that passes an edge closer than their rounding error, or about which of two surfaces at the same distance is in
+// front. So the judge says for each triangle whether the ray crosses it for sure, perhaps, or not, with stated bounds,
+// and an answer is justified if
+//   a hit:    its triangle is crossed perhaps, its t is right within the bound, and nothing sure lies in front beyond
+//   the bounds; a miss:   nothing is crossed for sure between t_min and t_max.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@
 namespace raycache::tracer::test {
 
 /// Bound of the error across the ray: `lateral_ulps` * 2^-24 * the distance from the origin to the triangle's farthest
-/// vertex. Both intersectors first subtract the origin, so their errors grow with that distance and not with the coordinates. Woop's
-/// shear rounds five times per coordinate, sqrt(2) * 5 < 8.
+/// vertex. Both intersectors first subtract the origin, so their errors grow with that distance and not with the
+/// coordinates. Woop's shear rounds five times per coordinate, sqrt(2) * 5 < 8.
 inline constexpr double lateral_ulps = 8;
 /// Bound of the error along the ray: `depth_ulps` * 2^-24 * the same distance, plus what the lateral error does to the
 /// barycentric weights of a tilted triangle: at most `weight_factor` * lateral error / smallest height seen along the
@@ -82,7 +82,8 @@ public:
         const double height = longest > 0 ? std::fabs(area) / longest : 0;  // the smallest, seen along the ray
         out.inside = std::numeric_limits<double>::infinity();
         for (int i = 0; i < 3; ++i)
-            out.inside = std::min(out.inside, edge[i] > 0 ? sign * weight[i] / edge[i] : -std::hypot(p[(i + 1) % 3][0], p[(i + 1) % 3][1]));
+            out.inside = std::min(out.inside, edge[i] > 0 ? sign * weight[i] / edge[i]
+                                                          : -std::hypot(p[(i + 1) % 3][0], p[(i + 1) % 3][1]));
         if (out.inside < 0) out.inside = -outside(p);
         double z = z_low, move = z_high - z_low;
         if (height > 0) {
@@ -155,8 +156,10 @@ inline std::vector<Crossing> crossings(const PreparedScene& scene, const Ray& ra
         stack.pop_back();
         for (int c = 0; c < 2; ++c) {
             const std::uint32_t ref = node.child[c];
-            if (!exact.near({{node.x[c], node.y[c], node.z[c]}, {node.x[c + 2], node.y[c + 2], node.z[c + 2]}})) continue;
-            if (!ChildRef::is_leaf(ref)) stack.push_back(ref);
+            if (!exact.near({{node.x[c], node.y[c], node.z[c]}, {node.x[c + 2], node.y[c + 2], node.z[c + 2]}}))
+                continue;
+            if (!ChildRef::is_leaf(ref))
+                stack.push_back(ref);
             else
                 for (std::uint32_t k = 0; k < ChildRef::count(ref); ++k) {
                     const Crossing made =

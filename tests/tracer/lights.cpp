@@ -48,7 +48,8 @@ TEST_CASE("lights: a square gives the irradiance of its form factor") {
 
 TEST_CASE("lights: an emissive triangle shines from both sides") {
     const Lights lights(square_light(1, 5));
-    CHECK(irradiance(lights, {0, 2, 0}, {0, -1, 0}, 500) == Approx(irradiance(lights, {0, 0, 0}, {0, 1, 0}, 500)).epsilon(1e-3));
+    CHECK(irradiance(lights, {0, 2, 0}, {0, -1, 0}, 500) ==
+          Approx(irradiance(lights, {0, 0, 0}, {0, 1, 0}, 500)).epsilon(1e-3));
 }
 
 TEST_CASE("lights: the sun gives its irradiance times the cosine, from within its disc") {
@@ -105,8 +106,10 @@ TEST_CASE("lights: points spread evenly over a triangle") {
         const LightSample s = lights.sample({0, 0, 0}, {random.unit(), random.unit()});
         const Vec3 p = s.direction * s.distance;
         const int x = static_cast<int>(p.x * 4), z = static_cast<int>(p.z * 4);
-        if (x < 0 || z < 0 || x > 3 || z > 3 || p.x + p.z > 1.00001F) ++outside;
-        else ++cells[4 * z + x];
+        if (x < 0 || z < 0 || x > 3 || z > 3 || p.x + p.z > 1.00001F)
+            ++outside;
+        else
+            ++cells[4 * z + x];
     }
     CHECK(outside == 0);
     for (int z = 0; z < 4; ++z)

@@ -36,8 +36,8 @@ private:
     WarpTraversal<NullRecorder> traversal_;
 };
 
-/// Traces pictures of `size` x `size` pixels with one sample after another by `traversal` while `go_on()` says so. Returns the sum of
-/// all paths' radiance.
+/// Traces pictures of `size` x `size` pixels with one sample after another by `traversal` while `go_on()` says so.
+/// Returns the sum of all paths' radiance.
 template <class Traversal, class GoOn>
 Vec3 trace_pictures(const PreparedScene& scene, Traversal& traversal, std::uint32_t size, const PathSettings& paths,
                     GoOn go_on) {
@@ -47,7 +47,8 @@ Vec3 trace_pictures(const PreparedScene& scene, Traversal& traversal, std::uint3
     settings.parameters.spp = spp;
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), size, size);
-    PathIntegrator<Traversal> integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal);
+    PathIntegrator<Traversal> integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths,
+                                         traversal);
     const LaunchGrid grid(ThreadMap::tile, size, size, spp);
     double sum[3] = {};
     for (std::uint32_t sample = 0; sample < spp && go_on(); ++sample) {

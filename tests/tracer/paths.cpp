@@ -156,7 +156,10 @@ TEST_CASE("paths: a ray that leaves a surface does not meet it again, near the o
 TEST_CASE("paths: directions are unit, above the surface and cosine-distributed for every normal") {
     Random random(2);
     for (int i = 0; i < 1000; ++i) {
-        const Vec3 normal = i == 0 ? Vec3{0, 0, -1} : i == 1 ? Vec3{0, 0, 1} : i == 2 ? Vec3{1, 0, -0.0F} : random.direction();
+        const Vec3 normal = i == 0   ? Vec3{0, 0, -1}
+                            : i == 1 ? Vec3{0, 0, 1}
+                            : i == 2 ? Vec3{1, 0, -0.0F}
+                                     : random.direction();
         double sum = 0;
         for (int k = 0; k < 100; ++k) {
             const Vec3 d = to_world(cosine_hemisphere({(static_cast<float>(k) + 0.5F) / 100, random.unit()}), normal);

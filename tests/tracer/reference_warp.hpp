@@ -1,5 +1,6 @@
-// The while-while traversal once more, as plainly as possible: each ray walks alone by recursion, then a scheduler lays the
-// lanes' walks side by side by the lock-step rule. Shares the box and the triangle test with the code under test, nothing else.
+// The while-while traversal once more, as plainly as possible: each ray walks alone by recursion, then a scheduler lays
+// the lanes' walks side by side by the lock-step rule. Shares the box and the triangle test with the code under test,
+// nothing else.
 #pragma once
 
 #include <bit>

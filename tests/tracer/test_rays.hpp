@@ -76,7 +76,8 @@ inline Vec3 corner(const Scene& scene, std::uint32_t triangle, std::uint32_t cor
     return scene.positions[scene.indices[3 * std::size_t{triangle} + corner]];
 }
 
-/// Rays from random points of the box at vertices and at points of edges of random triangles; directions not normalised.
+/// Rays from random points of the box at vertices and at points of edges of random triangles; directions not
+/// normalised.
 inline std::vector<Ray> aimed_rays(const Scene& scene, const Box& box, std::size_t count, std::uint32_t seed) {
     Random random(seed);
     std::vector<Ray> rays;

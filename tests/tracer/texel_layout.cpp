@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "test_meshes.hpp"
-#include "traces/error.hpp"
 #include "tracer/scene/texel_layout.hpp"
+#include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;
@@ -93,8 +93,8 @@ TEST_CASE("texel layout: any coordinate gives some texel: NaN, infinite, huge, t
     const Scene scene = textured({numbered(5, 3)});
     const TexelLayout layout(scene);
     const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    for (const float odd : {nan, infinity, -infinity, 1e30F, -1e30F, 3.4e38F, -1e-30F, -1e-45F, 1e-45F, 16777215.5F, -8388607.5F,
-                            std::nextafter(1.0F, 0.0F), -0.0F}) {
+    for (const float odd : {nan, infinity, -infinity, 1e30F, -1e30F, 3.4e38F, -1e-30F, -1e-45F, 1e-45F, 16777215.5F,
+                            -8388607.5F, std::nextafter(1.0F, 0.0F), -0.0F}) {
         REQUIRE(layout.fetch(0, {odd, 0.5F}).element < layout.count());
         REQUIRE(layout.fetch(0, {0.5F, odd}).element < layout.count());
     }

@@ -5,15 +5,16 @@
 #include <tuple>
 #include <vector>
 
-#include "traces/error.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;
 
 namespace {
 
-constexpr std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1}, {17, 33}, {512, 512}, {16, 16}, {15, 1}, {1, 100}, {33, 8}};
+constexpr std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1},  {17, 33}, {512, 512}, {16, 16},
+                                                             {15, 1}, {1, 100}, {33, 8}};
 
 }  // namespace
 

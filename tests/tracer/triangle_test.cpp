@@ -31,7 +31,8 @@ Ray along(Vec3 origin, Vec3 direction) {
 
 const Bvh2Triangle right_angle = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
 
-/// Rays from points well inside a sphere of the given place and size, at its vertices, edges and anywhere: how many get out?
+/// Rays from points well inside a sphere of the given place and size, at its vertices, edges and anywhere: how many get
+/// out?
 std::uint64_t leaks(const Scene& sphere, float scale, Vec3 centre, std::size_t count, std::uint32_t seed) {
     const PreparedScene scene(Scene(sphere), BvhSettings{});
     const float reach = 0.45F * scale;  // an icosahedron's inscribed sphere has radius 0.79
@@ -70,7 +71,8 @@ TEST_CASE("triangle test: rays past each edge, parallel to the plane or away fro
 }
 
 TEST_CASE("triangle test: edges and vertices belong to the triangle") {
-    for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0.5F, 0, 0}, Vec3{0, 0.5F, 0}, Vec3{0.5F, 0.5F, 0}})
+    for (const Vec3 p :
+         {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0.5F, 0, 0}, Vec3{0, 0.5F, 0}, Vec3{0.5F, 0.5F, 0}})
         CHECK(hit_of(right_angle, along(p + Vec3{0, 0, 1}, {0, 0, -1})).found());
 }
 
@@ -148,7 +150,8 @@ TEST_CASE("triangle test: a closed mesh leaks no ray even where its triangles ha
     const Scene sphere = moved(icosphere(4), 0.1F, {1e5F, -1e5F, 1e5F});
     std::uint64_t flat = 0;
     for (std::uint32_t t = 0; t < sphere.triangle_count(); ++t)
-        flat += cross(corner(sphere, t, 1) - corner(sphere, t, 0), corner(sphere, t, 2) - corner(sphere, t, 0)) == Vec3{};
+        flat +=
+            cross(corner(sphere, t, 1) - corner(sphere, t, 0), corner(sphere, t, 2) - corner(sphere, t, 0)) == Vec3{};
     CHECK(flat > 100);
     CHECK(leaks(sphere, 0.1F, {1e5F, -1e5F, 1e5F}, 200000, 3) == 0);
 }
@@ -189,7 +192,8 @@ TEST_CASE("triangle test: two triangles with a common edge leave no gap, in any 
         const float left = dot(c - a, plane), right = dot(d - a, plane);
         if (!(left * right < 0 && std::fabs(left) > 0.01F && std::fabs(right) > 0.01F)) continue;
         if (length(on_edge - a) < 1e-3F || length(on_edge - b) < 1e-3F) continue;  // beyond a vertex is a miss by right
-        gaps += !hit_of(triangle(a, b, c), ray).found() && !hit_of(i % 2 == 0 ? triangle(b, a, d) : triangle(d, a, b), ray).found();
+        gaps += !hit_of(triangle(a, b, c), ray).found() &&
+                !hit_of(i % 2 == 0 ? triangle(b, a, d) : triangle(d, a, b), ray).found();
     }
     CHECK(gaps == 0);
 }

@@ -17,9 +17,7 @@ namespace {
 
 const Box cube{{-1.2F, -1.2F, -1.2F}, {1.2F, 1.2F, 1.2F}};
 
-bool equal(const Hit& a, const Hit& b) {
-    return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v;
-}
+bool equal(const Hit& a, const Hit& b) { return a.triangle == b.triangle && a.t == b.t && a.u == b.u && a.v == b.v; }
 
 Hit brute_force(const PreparedScene& scene, const Ray& ray) {
     ShearedRay prepared;
@@ -30,8 +28,8 @@ Hit brute_force(const PreparedScene& scene, const Ray& ray) {
     return hit;
 }
 
-/// A 4x4 texture whose alpha is 0 or 255 in a chessboard, on some of the triangles; and one constant material below, one above the
-/// cutoff, one textured without holes.
+/// A 4x4 texture whose alpha is 0 or 255 in a chessboard, on some of the triangles; and one constant material below,
+/// one above the cutoff, one textured without holes.
 PreparedScene with_holes(Scene scene, const BvhSettings& settings = {}) {
     Texture texture{4, 4, {}, "chessboard"};
     for (std::uint32_t i = 0; i < 16; ++i)
@@ -132,7 +130,8 @@ TEST_CASE("warp traversal: a lane's hit does not depend on the other lanes, nor 
         const Recorded all = record(scene, ~0U, &rays[first], false), all_any = record(scene, ~0U, &rays[first], true);
         for (const std::uint32_t mask : {random.bits(), random.bits() & random.bits(), 1U << random.below(32)}) {
             if (mask == 0) continue;
-            const Recorded some = record(scene, mask, &rays[first], false), some_any = record(scene, mask, &rays[first], true);
+            const Recorded some = record(scene, mask, &rays[first], false),
+                           some_any = record(scene, mask, &rays[first], true);
             for (unsigned l = 0; l < 32; ++l)
                 differ += ((mask >> l) & 1U) != 0 ? !equal(some.hits[l], all.hits[l]) : !equal(some.hits[l], Hit{});
             differ += some_any.occluded != (all_any.occluded & mask);
@@ -162,8 +161,8 @@ TEST_CASE("warp traversal: records are those of lone rays laid side by side in l
                 std::vector<LoneRay> lanes;
                 for (unsigned l = 0; l < 32; ++l) lanes.emplace_back(*scene, rays[first + l], any_hit);
                 const Recorded got = record(*scene, mask, &rays[first], any_hit);
-                const WarpTrace expected = any_hit ? lock_step(lanes, mask, RayType::shadow, 3)
-                                                   : lock_step(lanes, mask, RayType::bounce, 2);
+                const WarpTrace expected =
+                    any_hit ? lock_step(lanes, mask, RayType::shadow, 3) : lock_step(lanes, mask, RayType::bounce, 2);
                 differ += got.trace != expected;
                 for (unsigned l = 0; l < 32; ++l)
                     if (((mask >> l) & 1U) != 0)
@@ -235,9 +234,8 @@ TEST_CASE("warp traversal: holes let rays through to what is behind, for closest
         const Recorded shadow = record(made, 1, &ray, true);
         CHECK(shadow.occluded == (solid ? 1U : 0U));
         for (const Recorded& got : {closest, shadow})
-            CHECK(std::count_if(got.trace.records.begin(), got.trace.records.end(), [](const Record& r) {
-                      return r.is_access() && r.region == texel_region;
-                  }) == 1);
+            CHECK(std::count_if(got.trace.records.begin(), got.trace.records.end(),
+                                [](const Record& r) { return r.is_access() && r.region == texel_region; }) == 1);
     }
 }
 

@@ -1,4 +1,5 @@
-// A bounding volume hierarchy as the builder leaves it: no byte layout yet. layouts/ turns it into what a GPU would read.
+// A bounding volume hierarchy as the builder leaves it: no byte layout yet. layouts/ turns it into what a GPU would
+// read.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +19,18 @@ struct Bvh {
         bool is_leaf() const { return count != 0; }
     };
     std::vector<Node> nodes;
-    std::vector<std::uint32_t> triangles;  ///< scene triangle of each leaf entry; one may occur twice after spatial splits
-    std::uint32_t depth = 0;               ///< edges on the longest way from the root to a leaf
+    std::vector<std::uint32_t>
+        triangles;            ///< scene triangle of each leaf entry; one may occur twice after spatial splits
+    std::uint32_t depth = 0;  ///< edges on the longest way from the root to a leaf
 };
 
 struct BvhSettings {
     std::uint32_t max_leaf_size = 4;  ///< triangles, 1 … 7
-    bool spatial_splits = false;      ///< Stich, Friedrich, Dietrich 2009: fewer overlaps, some triangles referenced twice
+    bool spatial_splits = false;  ///< Stich, Friedrich, Dietrich 2009: fewer overlaps, some triangles referenced twice
 };
 
-/// Builds with Embree's binned-SAH builder on one thread, so that equal scenes give equal trees. Throws Error where the scene
-/// has no triangle or coordinates beyond 1e18.
+/// Builds with Embree's binned-SAH builder on one thread, so that equal scenes give equal trees. Throws Error where the
+/// scene has no triangle or coordinates beyond 1e18.
 Bvh build_bvh(const Scene&, const BvhSettings& = {});
 
 }  // namespace raycache::tracer

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "traces/error.hpp"
 #include "tracer/bvh/bvh.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tracer {
 namespace {
@@ -33,7 +33,8 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned, void*) {
 }
 
 void set_children(void* node, void** children, unsigned count, void*) {
-    for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(node)->child.at(i) = static_cast<BuildNode*>(children[i]);
+    for (unsigned i = 0; i < count; ++i)
+        static_cast<BuildNode*>(node)->child.at(i) = static_cast<BuildNode*>(children[i]);
 }
 
 void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
@@ -41,8 +42,8 @@ void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
 }
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
-    auto* triangles =
-        static_cast<std::uint32_t*>(rtcThreadLocalAlloc(allocator, count * sizeof(std::uint32_t), alignof(std::uint32_t)));
+    auto* triangles = static_cast<std::uint32_t*>(
+        rtcThreadLocalAlloc(allocator, count * sizeof(std::uint32_t), alignof(std::uint32_t)));
     for (size_t i = 0; i < count; ++i) triangles[i] = primitives[i].primID;
     std::sort(triangles, triangles + count);  // the builder's partition leaves them in no particular order
     auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), alignof(BuildNode))) BuildNode;
@@ -52,8 +53,8 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
 }
 
 /// Bounds of the two parts into which the plane `axis` = `position` cuts a triangle reference.
-void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float position, RTCBounds* left, RTCBounds* right,
-                     void* user) {
+void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float position, RTCBounds* left,
+                     RTCBounds* right, void* user) {
     const Scene& scene = *static_cast<const Scene*>(user);
     const std::uint32_t* index = &scene.indices[3 * std::size_t{primitive->primID}];
     std::array<Box, 2> part;
@@ -137,8 +138,8 @@ Bvh build_bvh(const Scene& scene, const BvhSettings& settings) {
     const Box bounds = scene.bounds();
     const float reach = std::max(max_component(bounds.upper), max_component(-bounds.lower));
     if (!(reach <= largest_coordinate))
-        throw Error(fmt::format("{}: a coordinate of {:g}; expected at most {:g}: scale the scene down", scene.name, reach,
-                                largest_coordinate));
+        throw Error(fmt::format("{}: a coordinate of {:g}; expected at most {:g}: scale the scene down", scene.name,
+                                reach, largest_coordinate));
 
     auto primitives = make_primitives(scene, settings.spatial_splits ? 1 + split_budget : 1);
     const RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");

@@ -43,8 +43,18 @@ EmbreeReference::~EmbreeReference() {
 
 Hit EmbreeReference::intersect(const Ray& ray) const {
     RTCRayHit query{};
-    query.ray = {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y, ray.direction.z,
-                 0,            ray.t_max,    ~0U,          0,         0};
+    query.ray = {ray.origin.x,
+                 ray.origin.y,
+                 ray.origin.z,
+                 ray.t_min,
+                 ray.direction.x,
+                 ray.direction.y,
+                 ray.direction.z,
+                 0,
+                 ray.t_max,
+                 ~0U,
+                 0,
+                 0};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
@@ -55,8 +65,18 @@ Hit EmbreeReference::intersect(const Ray& ray) const {
 }
 
 bool EmbreeReference::occluded(const Ray& ray) const {
-    RTCRay query{ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y, ray.direction.z,
-                 0,            ray.t_max,    ~0U,          0,         0};
+    RTCRay query{ray.origin.x,
+                 ray.origin.y,
+                 ray.origin.z,
+                 ray.t_min,
+                 ray.direction.x,
+                 ray.direction.y,
+                 ray.direction.z,
+                 0,
+                 ray.t_max,
+                 ~0U,
+                 0,
+                 0};
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(impl_->scene, &context, &query);

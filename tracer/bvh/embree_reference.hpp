@@ -17,7 +17,7 @@ public:
     EmbreeReference(const EmbreeReference&) = delete;
     EmbreeReference& operator=(const EmbreeReference&) = delete;
 
-    Hit intersect(const Ray&) const;   ///< rtcIntersect1
+    Hit intersect(const Ray&) const;  ///< rtcIntersect1
     bool occluded(const Ray&) const;  ///< rtcOccluded1
 
 private:

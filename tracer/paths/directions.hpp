@@ -8,9 +8,9 @@
 
 namespace raycache::tracer {
 
-/// Turns `local` (z = normal) into world space by the orthonormal basis of T. Duff et al., "Building an Orthonormal Basis,
-/// Revisited", JCGT 2017. The basis changes smoothly with the normal, so neighbouring pixels with equal numbers send rays in
-/// nearly equal directions.
+/// Turns `local` (z = normal) into world space by the orthonormal basis of T. Duff et al., "Building an Orthonormal
+/// Basis, Revisited", JCGT 2017. The basis changes smoothly with the normal, so neighbouring pixels with equal numbers
+/// send rays in nearly equal directions.
 inline Vec3 to_world(Vec3 local, Vec3 normal) {
     const float sign = std::copysign(1.0F, normal.z);
     const float a = -1.0F / (sign + normal.z);

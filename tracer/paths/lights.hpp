@@ -21,9 +21,9 @@ public:
 
     bool empty() const { return !sun_ && emitters_.empty(); }
 
-    /// One light for the surface point `from`, by two numbers in [0, 1). Emissive triangles are chosen by power and shine from
-    /// both sides; where there is a sun too, half of the samples go to it. The first number is used twice: what selection leaves
-    /// of it is stretched to [0, 1) again.
+    /// One light for the surface point `from`, by two numbers in [0, 1). Emissive triangles are chosen by power and
+    /// shine from both sides; where there is a sun too, half of the samples go to it. The first number is used twice:
+    /// what selection leaves of it is stretched to [0, 1) again.
     LightSample sample(Vec3 from, Vec2 random) const;
 
 private:

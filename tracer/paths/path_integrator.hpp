@@ -1,6 +1,6 @@
-// A path tracer for the lanes of one warp, in megakernel order: camera rays; then per path vertex a texel read where the
-// surface is textured, a shadow ray, a bounce ray. Diffuse surfaces, emitters seen directly, sky seen by camera and bounce
-// rays. Lanes that have left the scene or whose throughput is black stay idle until the warp ends.
+// A path tracer for the lanes of one warp, in megakernel order: camera rays; then per path vertex a texel read where
+// the surface is textured, a shadow ray, a bounce ray. Diffuse surfaces, emitters seen directly, sky seen by camera and
+// bounce rays. Lanes that have left the scene or whose throughput is black stay idle until the warp ends.
 //
 // Dimensions of a sample, in pairs: (0,1) position in the pixel; vertex b = 0, 1, …: (2+4b, 3+4b) point on a light,
 // (4+4b, 5+4b) bounce direction; behind all vertices one dimension each for Russian roulette.
@@ -20,7 +20,6 @@
 #include <limits>
 #include <numbers>
 
-#include "traces/record.hpp"
 #include "tracer/paths/camera_rays.hpp"
 #include "tracer/paths/directions.hpp"
 #include "tracer/paths/lights.hpp"
@@ -28,6 +27,7 @@
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/scene/texel_layout.hpp"
+#include "traces/record.hpp"
 
 namespace raycache::tracer {
 
@@ -44,8 +44,8 @@ inline std::uint32_t path_dimensions(std::uint32_t bounces) { return 2 + 5 * (bo
 /// What a lane works on.
 struct PathLane {
     std::uint32_t x = 0, y = 0;
-    std::uint32_t pixel = 0;   ///< y * width + x: identifies the pixel to the decorrelation
-    std::uint32_t sample = 0;  ///< sample index
+    std::uint32_t pixel = 0;              ///< y * width + x: identifies the pixel to the decorrelation
+    std::uint32_t sample = 0;             ///< sample index
     const std::uint32_t* base = nullptr;  ///< SamplingStrategy::base_point(sample)
 };
 
@@ -151,8 +151,7 @@ private:
             const LightSample light = lights_.sample(s.position, pair(l, 2 + 4 * vertex));
             const float cosine = dot(s.shading_normal, light.direction);
             if (!(cosine > 0) || !(dot(s.geometric_normal, light.direction) > 0)) return;
-            contribution[l] =
-                throughput_[l] * light.radiance_over_pdf * (cosine * std::numbers::inv_pi_v<float>);
+            contribution[l] = throughput_[l] * light.radiance_over_pdf * (cosine * std::numbers::inv_pi_v<float>);
             if (!(max_component(contribution[l]) > 0)) return;
             constexpr float short_of_light = 0.9999F;
             rays[l] = {s.leave(light.direction), light.direction, 0, light.distance * short_of_light};

@@ -33,7 +33,8 @@ Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
     if (dot(s.geometric_normal, ray.direction) > 0) s.geometric_normal = -s.geometric_normal;
     s.shading_normal = s.geometric_normal;
     if (!scene.normals.empty()) {
-        const Vec3 blended = scene.normals[index[0]] * w + scene.normals[index[1]] * hit.u + scene.normals[index[2]] * hit.v;
+        const Vec3 blended =
+            scene.normals[index[0]] * w + scene.normals[index[1]] * hit.u + scene.normals[index[2]] * hit.v;
         const float size = length(blended);
         if (size > 0.1F) {  // else (0,0,0): the file gives none, or they cancel
             s.shading_normal = blended / size;

@@ -55,7 +55,8 @@ TexelLayout::Texel TexelLayout::fetch(int index, Vec2 texcoord) const {
     const std::uint32_t x = wrap(texcoord.x, texture.width);
     const std::uint32_t y = wrap(texcoord.y, texture.height);
     const std::uint32_t tile = (y / tile_height) * tiles_across(texture) + x / tile_width;
-    const std::uint32_t sector = (y % tile_height / sector_height) * (tile_width / sector_width) + x % tile_width / sector_width;
+    const std::uint32_t sector =
+        (y % tile_height / sector_height) * (tile_width / sector_width) + x % tile_width / sector_width;
     const std::uint32_t in_sector = (y % sector_height) * sector_width + x % sector_width;
     const std::uint8_t* rgba = &texture.rgba[4 * (std::size_t{y} * texture.width + x)];
     const auto& linear = srgb_table();

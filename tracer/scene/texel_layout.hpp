@@ -1,6 +1,7 @@
-// Where a texel lies in the imagined GPU's memory. Assumed (GPU vendors publish no more than "block linear"): RGBA8, no mipmaps,
-// textures one after another on 128 B boundaries, each in tiles of 8x4 texels = one 128 B line, made of four 4x2-texel
-// sectors of 32 B, so that a line and a sector each cover a compact patch. Lookups are nearest-texel, wrap mode repeat.
+// Where a texel lies in the imagined GPU's memory. Assumed (GPU vendors publish no more than "block linear"): RGBA8, no
+// mipmaps, textures one after another on 128 B boundaries, each in tiles of 8x4 texels = one 128 B line, made of four
+// 4x2-texel sectors of 32 B, so that a line and a sector each cover a compact patch. Lookups are nearest-texel, wrap
+// mode repeat.
 #pragma once
 
 #include <cstdint>

@@ -16,8 +16,8 @@
 
 namespace raycache::tracer {
 
-/// 1 + 4 ulp: (plane - origin) * (1 / direction) is rounded three times, by half an ulp each, on the near and on the far side;
-/// then this product is. Ize's 2 ulp lose a box now and then: tests/tracer/box_test.cpp has three.
+/// 1 + 4 ulp: (plane - origin) * (1 / direction) is rounded three times, by half an ulp each, on the near and on the
+/// far side; then this product is. Ize's 2 ulp lose a box now and then: tests/tracer/box_test.cpp has three.
 inline constexpr float box_margin = 1.00000048F;
 
 /// A ray prepared for box tests.
@@ -50,8 +50,8 @@ struct BoxHits {
 };
 
 /// Index: bit 0: child 0 is hit, bit 1: child 1 is hit, bit 2: child 0 is entered no later than child 1.
-inline constexpr BoxHits box_hits[8] = {{0, 0, ~0U}, {0, 0, 0},   {32, 0, 0}, {32, 1, 0},
-                                        {0, 0, ~0U}, {0, 0, 0},   {32, 0, 0}, {0, 1, 0}};
+inline constexpr BoxHits box_hits[8] = {{0, 0, ~0U}, {0, 0, 0}, {32, 0, 0}, {32, 1, 0},
+                                        {0, 0, ~0U}, {0, 0, 0}, {32, 0, 0}, {0, 1, 0}};
 
 inline const BoxHits& test_boxes(const Bvh2Node& node, const BoxRay& ray) {
     const auto slab = [&](const float* planes, int axis) {

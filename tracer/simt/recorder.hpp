@@ -33,7 +33,8 @@ public:
     }
     void start_rays(std::uint32_t mask) { records_.push_back({mask, traces::ray_start, type_, bounce_, 0}); }
 
-    /// An access by the lanes of `mask`: write their elements to the returned place, lowest lane first, and close() at its end.
+    /// An access by the lanes of `mask`: write their elements to the returned place, lowest lane first, and close() at
+    /// its end.
     std::uint32_t* open(std::uint32_t mask, std::uint8_t region) {
         records_.push_back({mask, region, type_, bounce_, 0});
         if (elements_.size() - used_ < traces::warp_lanes) elements_.resize(2 * elements_.size() + 4096);

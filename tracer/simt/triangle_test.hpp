@@ -1,6 +1,6 @@
-// Watertight ray–triangle intersection: S. Woop, C. Benthin, I. Wald, JCGT 2013. Shear the triangle so that the ray runs
-// along one axis, then decide by the signs of three 2-D edge functions; where one is exactly zero, decide in double. Two
-// triangles that share an edge compute the same number for it, so no ray slips between them.
+// Watertight ray–triangle intersection: S. Woop, C. Benthin, I. Wald, JCGT 2013. Shear the triangle so that the ray
+// runs along one axis, then decide by the signs of three 2-D edge functions; where one is exactly zero, decide in
+// double. Two triangles that share an edge compute the same number for it, so no ray slips between them.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace raycache::tracer {
 /// A ray prepared for triangle tests.
 struct ShearedRay {
     float origin[3];
-    int kx, ky, kz;       ///< kz: axis along which the direction is largest
-    float sx, sy, sz;     ///< shear constants
+    int kx, ky, kz;    ///< kz: axis along which the direction is largest
+    float sx, sy, sz;  ///< shear constants
     float t_min;
 
     void set(const Ray& ray) {
@@ -34,8 +34,9 @@ struct ShearedRay {
     }
 };
 
-/// Writes t, u, v and returns true if the ray meets the triangle at t in (t_min, best], where `best` is `hit` as it was: equal
-/// distances go to the lower triangle index, whatever the order of the visits. Leaves `hit` alone otherwise. Both sides count.
+/// Writes t, u, v and returns true if the ray meets the triangle at t in (t_min, best], where `best` is `hit` as it
+/// was: equal distances go to the lower triangle index, whatever the order of the visits. Leaves `hit` alone otherwise.
+/// Both sides count.
 inline bool test_triangle(const Bvh2Triangle& triangle, const ShearedRay& ray, Hit& hit) {
     const float* v0 = &triangle.v0.x;
     const float* v1 = &triangle.v1.x;

@@ -1,7 +1,9 @@
 // 32 rays walk a bvh2 together, as the lanes of a warp do: "while-while" of Aila & Laine 2009. The warp repeats
-//   1. while a lane stands at an inner node: all such lanes visit their node (one warp access) and step to the nearer child hit, or
+//   1. while a lane stands at an inner node: all such lanes visit their node (one warp access) and step to the nearer
+//   child hit, or
 //      pop; lanes that arrive at a leaf wait;
-//   2. while a waiting lane has an untested triangle: all such lanes test their next one (one warp access); then they pop.
+//   2. while a waiting lane has an untested triangle: all such lanes test their next one (one warp access); then they
+//   pop.
 // Popped entries are not culled by distance: like the kernels this models, the stack holds no distances.
 #pragma once
 
@@ -89,7 +91,8 @@ private:
         return lane_bit & (0U - static_cast<std::uint32_t>(condition));
     }
 
-    /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has none but for a lane's end.
+    /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has none but for a lane's
+    /// end.
     void visit_nodes() {
         std::uint32_t* element = recorder_->open(node_mask_, node_region);
         const Bvh2Node* nodes = bvh_->nodes.data();
@@ -100,7 +103,8 @@ private:
             *element++ = lane.current;
             const Bvh2Node& node = nodes[lane.current];
             const BoxHits& hit = test_boxes(node, lane.box);
-            const std::uint64_t near_far = std::rotr(std::bit_cast<std::uint64_t>(node.child), static_cast<int>(hit.near_shift));
+            const std::uint64_t near_far =
+                std::rotr(std::bit_cast<std::uint64_t>(node.child), static_cast<int>(hit.near_shift));
             std::uint32_t* top = lane.top;
             top[1] = static_cast<std::uint32_t>(near_far >> 32);  // counts only if both are hit
             top += hit.both;

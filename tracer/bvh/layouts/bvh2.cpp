@@ -21,7 +21,9 @@ void set_box(Bvh2Node& node, int child, const Box& box) {
     node.z[child + 2] = box.upper.z;
 }
 
-bool may_have_holes(const Material& m) { return m.alpha_mask && (m.base_color_texture >= 0 || m.alpha < m.alpha_cutoff); }
+bool may_have_holes(const Material& m) {
+    return m.alpha_mask && (m.base_color_texture >= 0 || m.alpha < m.alpha_cutoff);
+}
 
 std::uint32_t to_link(std::uint32_t ref) {
     if (ref == ChildRef::nothing) return traces::no_link;
@@ -33,8 +35,8 @@ std::uint32_t to_link(std::uint32_t ref) {
 
 Bvh2 make_bvh2(const Bvh& bvh, const Scene& scene) {
     if (bvh.triangles.size() > ChildRef::max_first || bvh.depth > max_depth)
-        throw Error(fmt::format("{}: a BVH of {} triangle references and {} levels; layout bvh2 holds {} and {}", scene.name,
-                                bvh.triangles.size(), bvh.depth, ChildRef::max_first, max_depth));
+        throw Error(fmt::format("{}: a BVH of {} triangle references and {} levels; layout bvh2 holds {} and {}",
+                                scene.name, bvh.triangles.size(), bvh.depth, ChildRef::max_first, max_depth));
     Bvh2 out;
     // Inner nodes keep their depth-first order; new_index maps a tree node to its layout node.
     std::vector<std::uint32_t> new_index(bvh.nodes.size());

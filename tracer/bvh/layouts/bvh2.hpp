@@ -1,13 +1,14 @@
 // Layout `bvh2`: what a GPU path tracer of the Aila–Laine kind keeps in memory (T. Aila, S. Laine: Understanding the
 // Efficiency of Ray Traversal on GPUs, HPG 2009). A node of 64 B holds the boxes of both children, so one visit decides
-// about two boxes; a triangle of 48 B holds its three vertices. Nodes stand in depth-first order, triangles in leaf order.
+// about two boxes; a triangle of 48 B holds its three vertices. Nodes stand in depth-first order, triangles in leaf
+// order.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "traces/header.hpp"
 #include "tracer/bvh/bvh.hpp"
+#include "traces/header.hpp"
 
 namespace raycache::tracer {
 
