@@ -36,6 +36,7 @@ std::vector<cachesim::Series> compare_fused(const Options& o, const std::vector<
         if (!w.empty()) warn(w);
     const auto scene = o.scene.prepare();
     std::vector<std::unique_ptr<tracer::Capture>> captures;
+    captures.reserve(settings.size());
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
     return replay_captures(captures, gpus);
 }

@@ -27,6 +27,7 @@ struct Topic {
 template <class List>
 std::vector<Entry> entries_of(const List& list) {
     std::vector<Entry> entries;
+    entries.reserve(list.size());
     for (const auto& item : list) entries.push_back({item.name, item.description});
     return entries;
 }

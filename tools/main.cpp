@@ -8,6 +8,20 @@
 #include "tools/console.hpp"
 #include "traces/error.hpp"
 
+namespace {
+
+/// CLI11 reads "-1" into an unsigned option as 2^64 - 1.
+void refuse_negative_counts(CLI::App& app) {
+    for (CLI::App* command : app.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            if (option->get_type_name().find("UINT") != std::string::npos)
+                option->check([](const std::string& text) {
+                    return !text.empty() && text[0] == '-' ? text + ": expected no negative number" : std::string();
+                });
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     using namespace raycache;
     CLI::App app{"Explains why one sampling strategy makes GPU ray tracing faster than another, without a GPU.",
@@ -27,6 +41,7 @@ int main(int argc, char** argv) {
     tools::add_replay(app);
     tools::add_compare(app);
     tools::add_list(app);
+    refuse_negative_counts(app);
     try {
         app.parse(argc, argv);
         return 0;

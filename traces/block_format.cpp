@@ -1,5 +1,6 @@
 #include "traces/block_format.hpp"
 
+#include <cstring>
 #include <string>
 
 namespace raycache::traces {

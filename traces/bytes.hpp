@@ -1,9 +1,9 @@
 // Little-endian integers in byte buffers; reads are bounded. Internal to traces/.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -46,7 +46,9 @@ inline std::uint32_t zigzag(std::uint32_t difference) { return (difference << 1)
 inline std::uint32_t unzigzag(std::uint32_t code) { return (code >> 1) ^ (0u - (code & 1)); }
 
 inline bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](char letter, std::uint8_t byte) { return static_cast<std::uint8_t>(letter) == byte; });
 }
 
 /// Takes values off the front of a buffer; nothing once it is exhausted.

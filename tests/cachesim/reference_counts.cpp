@@ -70,7 +70,7 @@ TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[
 }
 
 // Hidden: prints the speed of a replay, cachesim_tests "[speed]".
-TEST_CASE("a replay is fast", "[.speed]") {
+TEST_CASE("a replay is fast", "[.speed][slow]") {
     const auto folder = reference_folder();
     REQUIRE(folder);
     for (const char* trace : {"hr_coh", "hr_cp", "cp"})

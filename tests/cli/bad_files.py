@@ -40,14 +40,15 @@ def files_of_at_most(size):
 
 
 class BadScenes(ProgramTest):
-    def refuse_scene(self, name, code=1):
-        for command in (["capture", name, *LAUNCHES, "-o", "trace.rct"], ["render", name, "-o", "picture.png"],
-                        ["compare", "--scene", name, *GPU]):
+    def refuse_scene(self, name, code=1, everywhere=False):
+        commands = [["capture", name, *LAUNCHES, "-o", "trace.rct"], ["render", name, "-o", "picture.png"],
+                    ["compare", "--scene", name, *GPU]]
+        for command in commands if everywhere else commands[:1]:
             with self.subTest(f"{command[0]} {name}"):
                 self.refuses(code, *command, mentions=[name])
 
     def test_a_scene_that_does_not_exist(self):
-        self.refuse_scene("missing.glb", code=2)
+        self.refuse_scene("missing.glb", code=2, everywhere=True)
         self.refuse_scene("missing/folder/scene.gltf", code=2)
 
     def test_scenes_that_are_empty_or_something_else(self):
@@ -63,7 +64,7 @@ class BadScenes(ProgramTest):
 
     def test_a_folder_is_no_scene(self):
         self.path("scene.glb").mkdir()
-        self.refuse_scene("scene.glb")
+        self.refuse_scene("scene.glb", everywhere=True)
 
     def test_a_scene_that_asks_for_a_missing_buffer_or_an_unknown_extension(self):
         scene = ('{"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":36}],'
@@ -81,14 +82,14 @@ class BadScenes(ProgramTest):
 
 
 class BadTraces(ProgramTest):
-    def refuse_trace(self, name, *mentions):
-        for command in (["info", name], ["verify", name], ["verify", name, "--json"], ["replay", name, *GPU],
-                        ["compare", name, *GPU]):
+    def refuse_trace(self, name, *mentions, everywhere=False):
+        commands = [["verify", name], ["replay", name, *GPU], ["info", name], ["compare", name, *GPU]]
+        for command in commands if everywhere else commands[:2]:
             with self.subTest(" ".join(command)):
                 self.refuses(1, *command, mentions=[name, *mentions])
 
     def test_a_trace_that_does_not_exist(self):
-        self.refuse_trace("missing.rct")
+        self.refuse_trace("missing.rct", everywhere=True)
 
     def test_files_that_are_no_trace(self):
         for name, content in (("empty.rct", b""), ("text.rct", b"not a trace\n" * 100), ("zeros.rct", bytes(65536)),
@@ -103,11 +104,11 @@ class BadTraces(ProgramTest):
         version, = struct.unpack_from("<I", data, 8)
         struct.pack_into("<I", data, 8, version + 1)
         self.path("newer.rct").write_bytes(data)
-        self.refuse_trace("newer.rct", "version", str(version + 1))
+        self.refuse_trace("newer.rct", "version", str(version + 1), everywhere=True)
 
     def test_a_trace_cut_off_anywhere_is_refused(self):
         data = self.capture().read_bytes()
-        for share in (0.001, 0.1, 0.5, 0.9, 0.999):
+        for share in (0.001, 0.5, 0.999):
             self.path("cut.rct").write_bytes(data[:int(len(data) * share)])
             self.refuse_trace("cut.rct")
         self.path("cut.rct").write_bytes(data[:-1])
@@ -115,8 +116,8 @@ class BadTraces(ProgramTest):
 
     def test_verify_finds_any_changed_byte(self):
         data = self.capture().read_bytes()
-        for i in range(40):
-            at = len(data) * i // 40
+        for i in range(16):
+            at = len(data) * i // 16
             self.path("changed.rct").write_bytes(data[:at] + bytes([data[at] ^ 0x10]) + data[at + 1:])
             with self.subTest(f"byte {at} of {len(data)}"):
                 self.refuses(1, "verify", "changed.rct", mentions=["changed.rct"])

@@ -108,8 +108,8 @@ class Traces(ProgramTest):
 
     def test_no_more_samples_are_traced_than_there_are(self):
         for spp, wanted in ((1, 8), (4, 5)):
-            row, = self.warns("compare", "--scene", *SCENE, *PICTURE, "--spp", spp, "--trace-samples", wanted, "--strategy",
-                              "cranley-patterson", *GPU, "--json").json["rows"]
+            row, = self.warns("compare", "--scene", *SCENE, *PICTURE, *GPU, "--strategy", "cranley-patterson", "--spp", spp,
+                              "--trace-samples", wanted, "--json").json["rows"]
             self.assertEqual(row["samples"], list(range(spp)))
 
     def test_micro_jitter_of_one_sample_is_cranley_patterson_in_its_spread(self):
