@@ -59,12 +59,15 @@ void add_compare(CLI::App& app) {
     o->scene.add(*command, false);
     command->add_option("--strategy", o->strategies, "decorrelations, separated by commas")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->capture_default_str();
     command->add_option("--sequence", o->sequences, "sequences, separated by commas")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->capture_default_str();
     command->add_option("--spp", o->spp, "sizes N of the sample set, separated by commas")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->capture_default_str();
     o->sampling.add_launches(*command);
     o->sampling.add_picture(*command);

@@ -1,5 +1,6 @@
 // raycache: parse, run, report. One subcommand per file.
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -10,14 +11,19 @@
 
 namespace {
 
-/// CLI11 reads "-1" into an unsigned option as 2^64 - 1.
-void refuse_negative_counts(CLI::App& app) {
+/// CLI11 reads "-1" into an unsigned option as 2^64 - 1, and any number too large likewise.
+std::string check_count(const std::string& text) {
+    std::uint64_t value = 0;
+    if (!text.empty() && text[0] == '-') return text + ": expected no negative number";
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc::result_out_of_range)
+        return text + ": expected at most 18446744073709551615";
+    return {};
+}
+
+void check_counts(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({}))
         for (CLI::Option* option : command->get_options())
-            if (option->get_type_name().find("UINT") != std::string::npos)
-                option->check([](const std::string& text) {
-                    return !text.empty() && text[0] == '-' ? text + ": expected no negative number" : std::string();
-                });
+            if (option->get_type_name().find("UINT") != std::string::npos) option->check(check_count);
 }
 
 }  // namespace
@@ -41,7 +47,7 @@ int main(int argc, char** argv) {
     tools::add_replay(app);
     tools::add_compare(app);
     tools::add_list(app);
-    refuse_negative_counts(app);
+    check_counts(app);
     try {
         app.parse(argc, argv);
         return 0;

@@ -177,7 +177,8 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
 void ReportOptions::add(CLI::App& app, bool with_baseline) {
     app.add_option("--gpu", gpus, "GPU preset or FILE.toml; may be repeated (see 'raycache list gpus')")
         ->required()
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's")
         ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
     app.add_option(
