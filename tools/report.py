@@ -47,8 +47,10 @@ COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line
      "bytes per ray that L1 did not have and asked L2 for"),
     ("DRAM\nB/ray", lambda r: interval(r["dram_bytes_per_ray"]),
      "bytes per ray that neither cache had and that came from memory"),
+    ("L2\u2192L1\nratio", lambda r: interval(r["l2_bytes_ratio"]),
+     "L2\u2192L1 bytes per ray over those of the baseline strategy, compared sample index by sample index; below 1 is better"),
     ("DRAM\nratio", lambda r: interval(r["dram_bytes_ratio"]),
-     "DRAM bytes per ray over those of the baseline strategy, compared sample index by sample index; below 1 is better"),
+     "the same for DRAM bytes per ray"),
 ]
 
 
@@ -177,7 +179,7 @@ def factor_chart(comparison, setting):
             value *= factor
         axis.barh(len(FACTORS), value - 1, left=1, color="#444444", height=0.7,
                   xerr=half_width(row["dram_bytes_ratio"]), error_kw={"ecolor": "black", "capsize": 3})
-        axis.annotate(f"= {value:.2f}", (max(1, value), len(FACTORS)), xytext=(4, 0), textcoords="offset points",
+        axis.annotate(f"= {value:.2f}", (max(1, value + half_width(row["dram_bytes_ratio"])), len(FACTORS)), xytext=(4, 0), textcoords="offset points",
                       va="center", fontsize=8, weight="bold")
         axis.axvline(1, color="black", linewidth=0.8)
         axis.set_yticks(range(len(names)), names)
@@ -190,28 +192,28 @@ def factor_chart(comparison, setting):
     return svg(figure)
 
 
+def difference(ratio, source, baseline):
+    """Such as "12 % less from DRAM than cranley-patterson (x 0.880 ±0.012)"."""
+    if abs(ratio["mean"] - 1) <= half_width(ratio):
+        return f"about as much from {source} as {baseline} (\u00d7 {interval(ratio)}; the interval includes 1)"
+    change = abs(1 - ratio["mean"]) * 100
+    return (f"<b>{change:.{0 if change >= 10 else 1}f} % {'less' if ratio['mean'] < 1 else 'more'} from {source}</b> than "
+            f"{baseline} (\u00d7 {interval(ratio)})")
+
+
 def findings(comparison):
-    """One sentence per setting and strategy, at the largest N: is there a difference, and of what is it made?"""
+    """One sentence per setting and strategy, at the largest N."""
     sentences = []
+    baseline = html.escape(comparison.baseline)
     for setting in comparison.settings:
         rows = comparison.of(setting)
         most = max(r["spp"] for r in rows)
         for row in rows:
-            ratio = row["dram_bytes_ratio"]
-            if row["spp"] != most or not present(ratio) or not row["factors"]:
-                continue
-            start = (f"<b>{html.escape(comparison.titles[setting])}</b>, N = {most}: "
-                     f"<b>{html.escape(comparison.label(row))}</b> ")
-            if abs(ratio["mean"] - 1) <= half_width(ratio):
-                sentences.append(f"{start}reads about as much from DRAM per ray as {html.escape(comparison.baseline)} "
-                                 f"(\u00d7 {interval(ratio)}; the interval includes 1).")
-                continue
-            fewer = ratio["mean"] < 1
-            change = abs(1 - ratio["mean"]) * 100
-            key = (min if fewer else max)(FACTORS, key=lambda f: row["factors"][f[0]])
-            sentences.append(f"{start}reads {change:.{0 if change >= 10 else 1}f} % {'less' if fewer else 'more'} from DRAM "
-                             f"per ray than {html.escape(comparison.baseline)} (\u00d7 {interval(ratio)}). The largest "
-                             f"part of that: {key[1]}, \u00d7 {row['factors'][key[0]]:.2f}.")
+            if row["spp"] == most and present(row["dram_bytes_ratio"]) and present(row["l2_bytes_ratio"]):
+                sentences.append(f"{html.escape(comparison.titles[setting])}, N = {most}: per ray, "
+                                 f"<b>{html.escape(comparison.label(row))}</b> reads "
+                                 f"{difference(row['l2_bytes_ratio'], 'L2', baseline)} and "
+                                 f"{difference(row['dram_bytes_ratio'], 'DRAM', 'it')}.")
     return sentences
 
 
@@ -228,7 +230,7 @@ def table(comparison, setting):
         cells = [cell(row) for _, cell in lead]
         values = [cell(row) for _, cell, _ in COLUMNS]
         if row["strategy"] == comparison.baseline:
-            values[-1] = "baseline"
+            values[-2:] = ["baseline", "baseline"]
         lines.append(f"<tr{rule}><td class=left>{cells[0]}</td>" + "".join(f"<td>{c}</td>" for c in cells[1:] + values) + "</tr>")
     return f"<h3>{html.escape(comparison.titles[setting])}</h3>\n<table>\n" + "\n".join(lines) + "\n</table>"
 
@@ -276,7 +278,7 @@ def page(comparison, picture, command):
     parts += [f"<p>Note: {html.escape(note)}.</p>" for note in comparison.notes]
     strategies = distinct((r["strategy"], r["spp"], r["parameters"]) for r in comparison.rows if r["parameters"])
     parts.append("<h2>What the words mean</h2>\n<dl><dt>N</dt><dd>samples per pixel of the whole picture. Only some sample indices "
-                 "are traced, the same ones for every strategy; the others would tell the same story</dd>" +
+                 "are traced: a random choice, the same for every strategy</dd>" +
                  "".join(f"<dt>{title.replace(chr(10), ' ')}</dt><dd>{words}</dd>" for title, _, words in COLUMNS) + "</dl>")
     if strategies:
         parts.append("<h3>Parameters</h3>\n<ul>" + "".join(f"<li>{html.escape(s)}, N = {n}: {html.escape(p)}</li>" for s, n, p in strategies) + "</ul>")

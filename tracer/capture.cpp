@@ -137,6 +137,13 @@ void Capture::trace_warp(Worker& worker, std::uint32_t launch, std::uint32_t war
     worker.recorder.store(out);
 }
 
+void Capture::last_symbols(const Worker& worker, traces::WarpSymbols& out) const {
+    const Bvh2& bvh = scene_.bvh();
+    out.clear();
+    if (bvh.stack_entries <= traces::symbol_stack_entries && bvh.nodes.front().child[1] != ChildRef::nothing)
+        worker.recorder.store_symbols(out);
+}
+
 void write_capture(const Capture& capture, const std::string& path, const Progress& progress) {
     const traces::Header& header = capture.header();
     traces::Writer writer(path, header);
@@ -158,13 +165,21 @@ void write_capture(const Capture& capture, const std::string& path, const Progre
         }
         return range;
     };
-    tbb::enumerable_thread_specific<std::unique_ptr<Capture::Worker, void (*)(Capture::Worker*)>> workers(
-        [&] { return capture.make_worker(); });
+    struct Local {
+        std::unique_ptr<Capture::Worker, void (*)(Capture::Worker*)> worker;
+        std::vector<traces::WarpTrace> warps{};
+        std::vector<traces::WarpSymbols> symbols{};
+    };
+    tbb::enumerable_thread_specific<Local> locals([&] { return Local{capture.make_worker()}; });
     const auto trace = [&](const Range& range) {
-        std::vector<traces::WarpTrace> warps(range.count);
-        for (std::uint32_t i = 0; i < range.count; ++i)
-            capture.trace_warp(*workers.local(), range.launch, range.first + i, warps[i]);
-        return traces::encode_block(header, warps);
+        Local& local = locals.local();
+        local.warps.resize(range.count);
+        local.symbols.resize(range.count);
+        for (std::uint32_t i = 0; i < range.count; ++i) {
+            capture.trace_warp(*local.worker, range.launch, range.first + i, local.warps[i]);
+            capture.last_symbols(*local.worker, local.symbols[i]);
+        }
+        return traces::encode_block(header, local.warps, local.symbols);
     };
     const auto append = [&](const traces::Block& block) {
         writer.append(block);

@@ -14,6 +14,7 @@
 #include "tracer/simt/thread_map.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
+#include "traces/symbols.hpp"
 
 namespace raycache::tracer {
 
@@ -48,6 +49,10 @@ public:
     /// Traces one warp, replacing `out`. Thread-safe with one worker per thread; the result does not depend on the
     /// worker's past.
     void trace_warp(Worker&, std::uint32_t launch, std::uint32_t warp, traces::WarpTrace& out) const;
+
+    /// The symbols of the warp that this worker traced last, for traces::encode_block; empty where they are not known:
+    /// in trees deeper than symbols can speak of, or of one leaf.
+    void last_symbols(const Worker&, traces::WarpSymbols& out) const;
 
     /// The lanes' jobs of a warp, for programs that walk the same rays by other means (benchmarks).
     std::uint32_t lane_jobs(std::uint32_t launch, std::uint32_t warp,

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "traces/symbols.hpp"
+
 namespace raycache::traces::format {
 
 using namespace std::string_view_literals;
@@ -38,11 +40,10 @@ enum Stream : unsigned {
 inline constexpr unsigned streams = 8;
 inline constexpr std::size_t block_head_bytes = 48 + streams * 8;
 
-// Symbols below `sequential` count down from the top of the lane's stack.
-inline constexpr std::uint8_t sequential = 0x80;  ///< next element of the same region
-inline constexpr std::uint8_t end_of_ray = 0x81;  ///< no further access in this ray
-inline constexpr std::uint8_t literal = 0x82;     ///< spelled out in the literal streams
-inline constexpr unsigned stack_entries = 64;
+using symbol::end_of_ray;
+using symbol::literal;
+using symbol::sequential;
+inline constexpr unsigned stack_entries = symbol_stack_entries;
 
 // Bits of a control tag.
 inline constexpr std::uint8_t tag_region = 1, tag_mask = 2, tag_ray = 4, tag_known = 7;

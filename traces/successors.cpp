@@ -1,43 +1,19 @@
 #include "traces/successors.hpp"
 
 #include <bit>
-#include <string>
 
-#include "traces/fault.hpp"
 #include "traces/lane_stack.hpp"
+#include "traces/record_rules.hpp"
 
 namespace raycache::traces {
-namespace {
-
-[[noreturn]] void reject(const WarpTrace& warp, std::size_t record, const std::string& what) {
-    throw Error(
-        fmt::format("trace to be written: launch {}, warp {}, record {}: {}; this is a fault of the program that "
-                    "made the records, please report it",
-                    warp.launch, warp.warp, record, what));
-}
-
-void check(const Header& header, const WarpTrace& warp, std::size_t i, const Record& record) {
-    if (record.mask == 0) reject(warp, i, "expected a mask with at least one lane, found 0");
-    if (static_cast<unsigned>(record.ray) >= ray_types)
-        reject(warp, i, fmt::format("expected a ray type below {}, found {}", ray_types, unsigned(record.ray)));
-    if (record.reserved != 0) reject(warp, i, fmt::format("expected reserved 0, found {}", record.reserved));
-    if (record.is_access() && record.region >= header.regions.size())
-        reject(warp, i, fmt::format("expected a region below {}, found {}", header.regions.size(), record.region));
-}
-
-}  // namespace
-
 void SuccessorFinder::find(const Header& header, const WarpTrace& warp) {
     std::size_t lanes = 0, accesses = 0;
     for (std::size_t i = 0; i < warp.records.size(); ++i) {
-        check(header, warp, i, warp.records[i]);
+        check_record(header, warp, i);
         lanes += warp.records[i].lanes();
         if (warp.records[i].is_access()) accesses += warp.records[i].lanes();
     }
-    rays = lanes - accesses;
-    if (accesses != warp.elements.size())
-        reject(warp, warp.records.size(),
-               fmt::format("expected {} elements for its masks, found {}", accesses, warp.elements.size()));
+    check_elements(warp, accesses);
     if (after.size() < lanes) after.resize(lanes);
     if (next_in.size() < warp.records.size()) next_in.resize(warp.records.size());
 
@@ -74,8 +50,9 @@ void SuccessorFinder::find(const Header& header, const WarpTrace& warp) {
             outside |= element >= limit;
         }
         if (outside)
-            reject(warp, i,
-                   fmt::format("expected elements of region {} below {}, found one beyond", record.region, limit));
+            reject_record(
+                warp, i,
+                fmt::format("expected elements of region {} below {}, found one beyond", record.region, limit));
     }
     at_start = next;
     lanes_at_start = 0;

@@ -30,7 +30,6 @@ public:
     std::vector<std::array<std::uint32_t, 3>> next_in;
     std::array<Successor, warp_lanes> at_start;  ///< by lane: accesses that no ray start of the warp precedes
     std::uint32_t lanes_at_start = 0;            ///< those of at_start that are not none
-    std::uint64_t rays = 0;
 };
 
 }  // namespace raycache::traces

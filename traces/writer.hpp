@@ -9,6 +9,7 @@
 
 #include "traces/header.hpp"
 #include "traces/record.hpp"
+#include "traces/symbols.hpp"
 
 namespace raycache::traces {
 
@@ -21,7 +22,10 @@ struct Block {
 
 /// Encodes consecutive warps (all of the same launch), at most 2^25 lane accesses and rays; 16 to 256 warps suit best.
 /// Pure: same warps, same bytes, on any thread. Throws Error if a record breaks a rule of record.hpp.
-Block encode_block(const Header&, std::span<const WarpTrace> warps);
+/// `symbols`, if not empty: those of each warp, an empty one for "not known". A tracer knows them, and to find them
+/// takes longer than all the rest. They are believed: wrong ones make a trace of other records. They need a ray start
+/// before each lane's first access; with more than three regions they are not used.
+Block encode_block(const Header&, std::span<const WarpTrace> warps, std::span<const WarpSymbols> symbols = {});
 
 class Writer {
 public:

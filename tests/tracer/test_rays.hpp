@@ -15,6 +15,26 @@
 
 namespace raycache::tracer::test {
 
+/// A 4x4 texture whose alpha is 0 or 255 in a chessboard, on some of the triangles; and one constant material below,
+/// one above the cutoff, one textured without holes.
+inline PreparedScene with_holes(Scene scene, const BvhSettings& settings = {}) {
+    Texture texture{4, 4, {}, "chessboard"};
+    for (std::uint32_t i = 0; i < 16; ++i)
+        for (const int byte : {200, 100, 50, (i + i / 4) % 2 == 0 ? 255 : 0})
+            texture.rgba.push_back(static_cast<std::uint8_t>(byte));
+    scene.textures.push_back(texture);
+    scene.materials.resize(5);
+    scene.materials[1].alpha_mask = scene.materials[2].alpha_mask = scene.materials[3].alpha_mask = true;
+    scene.materials[1].base_color_texture = scene.materials[4].base_color_texture = 0;
+    scene.materials[2].alpha = 0.25F;
+    scene.materials[3].alpha = 0.75F;
+    Random random(9);
+    for (auto& m : scene.material_of) m = static_cast<std::uint16_t>(random.below(5));
+    for (std::size_t i = 0; i < scene.positions.size(); ++i)
+        scene.texcoords.push_back({random.between(-2, 2), random.between(-2, 2)});
+    return PreparedScene(std::move(scene), settings);
+}
+
 /// Calls body(mask, rays of the warp, index of lane 0) for one warp after another.
 template <class Body>
 void for_each_warp(std::span<const Ray> rays, Body body) {

@@ -60,7 +60,8 @@ GltfNodes place_gltf_nodes(const GltfDocument& document, const GltfReport& repor
     bool skinned = false;
     push(root_nodes(model, report), {});
     while (!pending.empty()) {
-        const auto [index, parent] = pending.back();
+        const int index = pending.back().node;
+        const Transform parent = pending.back().parent;
         pending.pop_back();
         if (index < 0 || static_cast<std::size_t>(index) >= model.nodes.size())
             report.fail("node hierarchy", fmt::format("a node below {}", model.nodes.size()), fmt::format("{}", index));

@@ -45,31 +45,42 @@ public:
     /// The lanes of `mask` each read one texel for shading; lane l reads `elements[l]`.
     void read_texels(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const std::uint32_t* elements) {
         recorder_->kind(type, bounce);
-        record_texels(mask, elements);
+        record_texels(mask, 0, elements);
     }
 
 private:
     /// One entry that is never read, the sentinel, the entries.
     std::size_t stride() const { return bvh_->stack_entries + 2; }
 
+    struct StackEntry {
+        std::uint32_t height;  ///< Lane::height below this sibling
+        std::uint32_t ref;
+    };
+
     /// One lane's place in the tree. The hot loop touches little else.
     struct alignas(64) Lane {
         BoxRay box;
-        std::uint32_t* top;     ///< the topmost stack entry; popping the sentinel `nothing` ends the lane
+        StackEntry* top;        ///< the topmost stack entry; popping the sentinel `nothing` ends the lane
         std::uint32_t current;  ///< where the lane stands: a node, a leaf, or nothing
+        /// Siblings of the nodes on the way here that have not been visited, hit or not: the height of the stack that
+        /// the trace's symbols speak of.
+        std::uint32_t height;
+        std::uint32_t last_symbol;  ///< its place; set wherever the lane may end
     };
 
     void begin(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {
         recorder_->kind(type, bounce);
-        recorder_->start_rays(mask);
+        std::uint32_t symbol = recorder_->start_rays(mask, traces::symbol::sequential);
         node_mask_ = mask;
         leaf_mask_ = 0;
         for (std::uint32_t m = mask; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
             lane_[l].box.set(rays[l]);
             lane_[l].top = &stack_[l * stride() + 1];
-            *lane_[l].top = ChildRef::nothing;
+            *lane_[l].top = {0, ChildRef::nothing};
             lane_[l].current = 0;
+            lane_[l].height = 0;
+            lane_[l].last_symbol = symbol++;
             sheared_[l].set(rays[l]);
             hits[l] = Hit{};
             hits[l].t = rays[l].t_max;
@@ -94,29 +105,38 @@ private:
     /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has none but for a lane's
     /// end.
     void visit_nodes() {
-        std::uint32_t* element = recorder_->open(node_mask_, node_region);
+        OpenRecord out = recorder_->open(node_mask_, node_region);
         const Bvh2Node* nodes = bvh_->nodes.data();
         std::uint32_t next_nodes = 0, ended = 0;
         for (std::uint32_t m = node_mask_; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
             Lane& lane = lane_[l];
-            *element++ = lane.current;
+            *out.element++ = lane.current;
             const Bvh2Node& node = nodes[lane.current];
             const BoxHits& hit = test_boxes(node, lane.box);
             const std::uint64_t near_far =
                 std::rotr(std::bit_cast<std::uint64_t>(node.child), static_cast<int>(hit.near_shift));
-            std::uint32_t* top = lane.top;
-            top[1] = static_cast<std::uint32_t>(near_far >> 32);  // counts only if both are hit
+            StackEntry* top = lane.top;
+            const std::uint32_t pushed = lane.height + 1;
+            // Counts only if both are hit.
+            top[1] = std::bit_cast<StackEntry>((near_far & ~std::uint64_t{0xffffffff}) | lane.height);
             top += hit.both;
             const auto near = static_cast<std::uint32_t>(near_far);
-            const std::uint32_t ref = near ^ ((near ^ *top) & hit.none);
+            const std::uint32_t ref = near ^ ((near ^ top->ref) & hit.none);
+            const std::uint32_t height = pushed ^ ((pushed ^ top->height) & hit.none);
+            // The child taken; or, if none is, how far to pop.
+            *out.symbol++ = static_cast<std::uint8_t>((hit.near_shift >> 5) + (pushed - height));
             lane.top = top - (hit.none & 1U);
             lane.current = ref;
+            lane.height = height;
             next_nodes |= (~ref >> 31) << l;
-            if (ref == ChildRef::nothing) [[unlikely]]
+            if (ref == ChildRef::nothing) [[unlikely]] {
                 ended |= 1U << l;
+                out.symbol[-1] = traces::symbol::end_of_ray;
+                lane.last_symbol = recorder_->place(out.symbol - 1);
+            }
         }
-        recorder_->close(element);
+        recorder_->close(out);
         leaf_mask_ |= node_mask_ & ~next_nodes & ~ended;
         node_mask_ = next_nodes;
     }
@@ -127,13 +147,16 @@ private:
         std::uint32_t waiting = leaf_mask_;
         for (std::uint32_t k = 0; waiting != 0; ++k) {
             std::uint32_t more = 0, holes = 0;
-            std::uint32_t* element = recorder_->open(waiting, triangle_region);
+            OpenRecord out = recorder_->open(waiting, triangle_region);
+            std::uint32_t symbol = recorder_->place(out.symbol);
             for (std::uint32_t m = waiting; m != 0; m &= m - 1) {
                 const auto l = static_cast<unsigned>(std::countr_zero(m));
                 const std::uint32_t bit = m & (0U - m);
                 const std::uint32_t leaf = lane_[l].current;
                 const std::uint32_t index = ChildRef::first(leaf) + k;
-                *element++ = index;
+                *out.element++ = index;
+                *out.symbol++ = traces::symbol::sequential;
+                lane_[l].last_symbol = symbol++;
                 more |= bit_if(k + 1 < ChildRef::count(leaf), bit);
                 const Bvh2Triangle& triangle = bvh_->triangles[index];
                 candidate_[l] = hits[l];
@@ -143,14 +166,20 @@ private:
                 else
                     occluded_lanes |= accept(l, hits);
             }
-            recorder_->close(element);
-            if (holes != 0) occluded_lanes |= test_holes(holes, hits);
+            recorder_->close(out);
+            if (holes != 0) occluded_lanes |= test_holes(holes, more, hits);
             waiting = any_hit ? more & ~occluded_lanes : more;
         }
         for (std::uint32_t m = leaf_mask_; m != 0; m &= m - 1) {
             Lane& lane = lane_[std::countr_zero(m)];
             const std::uint32_t bit = m & (0U - m);
-            lane.current = any_hit && (occluded_lanes & bit) != 0 ? ChildRef::nothing : *lane.top--;
+            const StackEntry popped =
+                any_hit && (occluded_lanes & bit) != 0 ? StackEntry{0, ChildRef::nothing} : *lane.top--;
+            const bool end = popped.ref == ChildRef::nothing;
+            recorder_->set_symbol(lane.last_symbol, end ? traces::symbol::end_of_ray
+                                                        : static_cast<std::uint8_t>(lane.height - popped.height - 1));
+            lane.current = popped.ref;
+            lane.height = popped.height;
             node_mask_ |= bit_if(!ChildRef::is_leaf(lane.current), bit);
             if (lane.current <= ChildRef::nothing) leaf_mask_ &= ~bit;
         }
@@ -164,8 +193,9 @@ private:
         return 1U << l;
     }
 
-    /// Candidates on materials that may have holes: reads their texels, accepts those that are solid.
-    std::uint32_t test_holes(std::uint32_t mask, Hit* hits) {
+    /// Candidates on materials that may have holes: reads their texels, accepts those that are solid. `more`: lanes
+    /// whose leaf has another triangle.
+    std::uint32_t test_holes(std::uint32_t mask, std::uint32_t more, Hit* hits) {
         std::uint32_t elements[lanes];
         std::uint32_t textured = 0, solid = 0;
         for (std::uint32_t m = mask; m != 0; m &= m - 1) {
@@ -182,13 +212,21 @@ private:
             }
             if (alpha >= material.alpha_cutoff) solid |= accept(l, hits);
         }
-        if (textured != 0) record_texels(textured, elements);
+        if (textured != 0) record_texels(textured, more, elements);
         return solid;
     }
 
-    void record_texels(std::uint32_t mask, const std::uint32_t* elements) {
-        std::uint32_t* out = recorder_->open(mask, texel_region);
-        for (; mask != 0; mask &= mask - 1) *out++ = elements[std::countr_zero(mask)];
+    /// `more`: lanes that will go on to an element no symbol but a literal leads to.
+    void record_texels(std::uint32_t mask, std::uint32_t more, const std::uint32_t* elements) {
+        OpenRecord out = recorder_->open(mask, texel_region);
+        for (; mask != 0; mask &= mask - 1) {
+            const auto l = static_cast<unsigned>(std::countr_zero(mask));
+            std::uint32_t& last = lane_[l].last_symbol;
+            recorder_->set_symbol(last, traces::symbol::literal);
+            last = recorder_->place(out.symbol);
+            *out.element++ = elements[l];
+            *out.symbol++ = (more >> l & 1) != 0 ? traces::symbol::literal : traces::symbol::end_of_ray;
+        }
         recorder_->close(out);
     }
 
@@ -196,7 +234,7 @@ private:
     const Bvh2* bvh_;
     const TexelLayout* texels_;
     Recorder* recorder_;
-    std::vector<std::uint32_t> stack_;
+    std::vector<StackEntry> stack_;
     std::uint32_t node_mask_ = 0, leaf_mask_ = 0;  ///< lanes at inner nodes; lanes that wait at a leaf
     Lane lane_[lanes];
     ShearedRay sheared_[lanes];
