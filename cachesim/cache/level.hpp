@@ -4,62 +4,58 @@
 // present but lacks wanted sectors (a sector miss) fetches just these. What is fetched is there for the next look-up.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "cachesim/cache/request.hpp"
 #include "cachesim/cache/set_index.hpp"
+#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 
 namespace raycache::cachesim {
 
-/// Looks up batches, so that the call through the table of the policy costs nothing per look-up.
+/// Looks up runs of requests, so that the call through the table of the policy costs little per look-up.
 class Level {
 public:
     virtual ~Level() = default;
 
-    /// Looks up the requests in order. Writes those that lack sectors, with only the missing sectors, to `misses`
-    /// (same order; may be the input's own memory) and returns their number.
-    virtual std::size_t process(std::span<const Request> requests, Request* misses) = 0;
+    /// Looks up the requests in order, each in the level's cache number first_cache + request.cache (in the one cache
+    /// of a shared level), and leaves in it the sectors that were missing.
+    virtual void process(std::span<Request> requests, std::uint32_t first_cache) = 0;
 };
 
 /// `Policy` holds tags and sectors of all sets and decides what to evict. It offers
-///     Policy(sets, ways, sectors_per_line)                all sets empty
-///     std::uint32_t access(set, const Request&)           the sectors that were missing; now present
-///     void prefetch(set, const Request&) const            a hint, changes nothing
+///     Policy(sets, ways, sectors_per_line)                     all sets empty
+///     std::uint32_t access(set, id, sectors)                   the sectors that were missing; now present
+///     void prefetch(set, id) const                             a hint, changes nothing
 template <class Policy>
 class LevelWith final : public Level {
 public:
-    LevelWith(const CacheGeometry& geometry, unsigned caches)
-        : index_(geometry.sets, geometry.index),
+    LevelWith(const CacheGeometry& geometry, unsigned caches, const LineIds& ids)
+        : ids_(ids),
+          index_(geometry.sets, geometry.index),
           sets_per_cache_(caches > 1 ? geometry.sets : 0),
           policy_(geometry.sets * caches, geometry.ways, geometry.line_bytes / geometry.sector_bytes) {}
 
-    std::size_t process(std::span<const Request> requests, Request* misses) override {
+    void process(std::span<Request> requests, std::uint32_t first_cache) override {
         std::array<std::uint64_t, 64> sets;  // a run of look-ups ahead, so that their memory is on its way
-        std::size_t written = 0;
         while (!requests.empty()) {
             const auto run = requests.first(std::min(requests.size(), sets.size()));
             for (std::size_t i = 0; i < run.size(); ++i) {
-                sets[i] = run[i].cache * sets_per_cache_ + index_(run[i].line);
-                policy_.prefetch(sets[i], run[i]);
+                sets[i] = (first_cache + run[i].cache) * sets_per_cache_ + index_(run[i].line);
+                policy_.prefetch(sets[i], run[i].line - ids_.offset(run[i].region));
             }
-            for (std::size_t i = 0; i < run.size(); ++i) {
-                const std::uint32_t missing = policy_.access(sets[i], run[i]);
-                misses[written] = run[i];
-                misses[written].sectors = missing;
-                written += missing != 0;
-            }
+            for (std::size_t i = 0; i < run.size(); ++i)
+                run[i].sectors = policy_.access(sets[i], run[i].line - ids_.offset(run[i].region), run[i].sectors);
             requests = requests.subspan(run.size());
         }
-        return written;
     }
 
 private:
+    LineIds ids_;
     SetIndexer index_;
     std::uint64_t sets_per_cache_;  ///< 0 for a shared level
     Policy policy_;

@@ -14,7 +14,7 @@ namespace {
 
 struct Entry {
     std::string_view name;
-    std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, std::uint64_t lines);
+    std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, const LineIds&, InstructionSet);
 };
 
 /// Sorted by name.
@@ -24,9 +24,10 @@ constexpr Entry policies[] = {
 
 }  // namespace
 
-std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, std::uint64_t lines) {
+std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, const LineIds& ids,
+                                  InstructionSet instructions) {
     for (const Entry& policy : policies)
-        if (policy.name == geometry.policy) return policy.make(geometry, caches, lines);
+        if (policy.name == geometry.policy) return policy.make(geometry, caches, ids, instructions);
     throw Error(fmt::format("cache: expected a replacement policy out of {}, found \"{}\"",
                             fmt::join(cache_policies(), ", "), geometry.policy));
 }

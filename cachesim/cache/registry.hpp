@@ -1,18 +1,19 @@
 // The replacement policies by name. A new policy is one file in policies/ and one line in registry.cpp.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cachesim/cache/level.hpp"
+#include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {
 
-/// `caches` empty caches of this geometry. `lines`: every request's line id is below this (LineIds::count()).
-/// Throws Error if the policy is unknown. The geometry must have passed find_problem().
-std::unique_ptr<Level> make_level(const CacheGeometry&, unsigned caches, std::uint64_t lines);
+/// `caches` empty caches of this geometry for requests to the regions that `ids` numbers. Throws Error if the policy is
+/// unknown. The geometry must have passed find_problem().
+std::unique_ptr<Level> make_level(const CacheGeometry&, unsigned caches, const LineIds& ids,
+                                  InstructionSet = best_instruction_set());
 
 /// Names that CacheGeometry::policy may have, sorted.
 std::vector<std::string> cache_policies();

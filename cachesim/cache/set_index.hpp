@@ -24,6 +24,7 @@ public:
 
     std::uint64_t operator()(std::uint64_t line) const {
         for (int shift = fold_; shift < 64; shift *= 2) line ^= line >> shift;
+        if ((sets_ & (sets_ - 1)) == 0) return line & (sets_ - 1);
         // line mod sets without a division: floor(line * reciprocal / 2^64) is the quotient or one less.
         const auto quotient = static_cast<std::uint64_t>((Wide{line} * reciprocal_) >> 64);
         const std::uint64_t rest = line - quotient * sets_;

@@ -12,30 +12,22 @@
 #include <vector>
 
 #include "cachesim/cache/request.hpp"
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/frontend/coalesce_avx512.hpp"
+#include "cachesim/frontend/region_layout.hpp"
+#include "cachesim/instruction_set.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
 
 namespace raycache::cachesim {
 
-/// What a warp access became.
-struct Coalesced {
-    std::size_t requests = 0;
-    unsigned sectors = 0;  ///< of all requests together
-};
-
 class Coalescer {
 public:
-    /// Sizes in bytes, powers of two, at most 32 sectors per line.
-    Coalescer(const std::vector<traces::Region>& regions, const LineIds& ids, std::uint32_t line_bytes,
-              std::uint32_t sector_bytes)
-        : line_shift_(std::countr_zero(line_bytes)),
-          sector_shift_(std::countr_zero(sector_bytes)),
-          sectors_per_line_(line_bytes / sector_bytes) {
+    Coalescer(const std::vector<traces::Region>& regions, const LineShape& shape, InstructionSet instructions)
+        : shape_(shape), avx512_(instructions >= InstructionSet::avx512) {
         std::size_t most_lines = 1;
-        for (std::size_t i = 0; i < regions.size(); ++i) {
-            layouts_.push_back(make_layout(regions[i], ids.offset(i), line_bytes));
-            most_lines = std::max<std::size_t>(most_lines, (regions[i].element_size - 1) / line_bytes + 2);
+        for (const traces::Region& region : regions) {
+            layouts_.emplace_back(region, shape);
+            most_lines = std::max<std::size_t>(most_lines, (region.element_size - 1) / shape.line_bytes + 2);
         }
         max_requests_ = most_lines * traces::warp_lanes + 1;
         // At most a quarter full, so that a probe rarely meets another line.
@@ -47,16 +39,17 @@ public:
     std::size_t max_requests() const { return max_requests_; }
 
     /// `elements`: one index per active lane, lowest lane first. Requests go to `out`, which has room for
-    /// max_requests(), with cache and group as in `like`.
-    Coalesced operator()(std::size_t region, const std::uint32_t* elements, unsigned lanes, const Request& like,
-                         Request* out) {
+    /// max_requests(), with region and group as in `like`.
+    Coalesced operator()(const std::uint32_t* elements, unsigned lanes, const Request& like, Request* out) {
+        const RegionLayout& layout = layouts_[like.region];
+        if (avx512_ && can_coalesce_avx512(layout, lanes))
+            return coalesce_avx512(layout, shape_, elements, lanes, like, out);
         if (base_ > ~std::uint32_t{0} - 2 * static_cast<std::uint32_t>(max_requests_)) {
             std::fill(table_.begin(), table_.end(), 0);
             base_ = 0;
         }
         base_ += static_cast<std::uint32_t>(max_requests_);  // every entry so far is below
-        const Layout& layout = layouts_[region];
-        Merger merger{table_.data(), table_.size() - 1, table_shift_, base_, layout.id_offset, like, out, {}};
+        Merger merger{table_.data(), table_.size() - 1, table_shift_, base_, like, out, {}};
         if (layout.aligned)
             merge_aligned(layout, elements, lanes, merger);
         else
@@ -65,14 +58,6 @@ public:
     }
 
 private:
-    struct Layout {
-        std::uint64_t base = 0, stride = 0, extra = 0;  ///< extra: element size - 1
-        std::uint64_t id_offset = 0;
-        bool aligned = false;    ///< a power of two of elements to a line, none straddles
-        int elements_shift = 0;  ///< aligned: log2 of elements per line
-        std::uint64_t first_line = 0;
-        std::vector<std::uint32_t> sectors;  ///< aligned: of each element of a line
-    };
     /// The lines of the access so far: out[0 … requests). A hash table says at which place to look for a line: an entry
     /// is base + place; entries of earlier accesses are below base, so they are at no place. Free of branches that
     /// depend on whether a line is new, which cannot be predicted: a new line is put behind the others before the
@@ -82,18 +67,14 @@ private:
         const std::size_t table_mask;
         const int table_shift;
         const std::uint32_t base;
-        const std::uint64_t id_offset;
         const Request like;
         Request* const out;
         Coalesced result;
 
         void touch(std::uint64_t line, std::uint32_t sectors) {
             Request& sentinel = out[result.requests];
+            sentinel = like;
             sentinel.line = line;
-            sentinel.id = static_cast<std::uint32_t>(line - id_offset);
-            sentinel.sectors = 0;
-            sentinel.cache = like.cache;
-            sentinel.group = like.group;
             const auto end = static_cast<std::uint32_t>(result.requests);
             // Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
             std::size_t at = (line * 0x9e3779b97f4a7c15ull) >> table_shift;
@@ -110,7 +91,7 @@ private:
         }
     };
 
-    static void merge_aligned(const Layout& layout, const std::uint32_t* elements, unsigned lanes, Merger& out) {
+    static void merge_aligned(const RegionLayout& layout, const std::uint32_t* elements, unsigned lanes, Merger& out) {
         Merger merger = out;  // its own copy, which nothing else can change, stays in registers
         const std::uint32_t* const sectors = layout.sectors.data();
         const std::uint64_t in_line = layout.sectors.size() - 1, first_line = layout.first_line;
@@ -122,13 +103,13 @@ private:
         out.result = merger.result;
     }
 
-    void merge_any(const Layout& layout, const std::uint32_t* elements, unsigned lanes, Merger& merger) const {
-        const std::uint64_t in_line = sectors_per_line_ - 1;
-        const int line_of_sector = line_shift_ - sector_shift_;
+    void merge_any(const RegionLayout& layout, const std::uint32_t* elements, unsigned lanes, Merger& merger) const {
+        const std::uint64_t in_line = shape_.sectors - 1;
+        const int line_of_sector = shape_.line_shift - shape_.sector_shift;
         for (unsigned lane = 0; lane < lanes; ++lane) {
             const std::uint64_t first_byte = layout.base + elements[lane] * layout.stride;
-            const std::uint64_t first = first_byte >> sector_shift_,
-                                last = (first_byte + layout.extra) >> sector_shift_;
+            const std::uint64_t first = first_byte >> shape_.sector_shift,
+                                last = (first_byte + layout.extra) >> shape_.sector_shift;
             const std::uint64_t last_line = last >> line_of_sector;
             std::uint64_t line = first >> line_of_sector, from = first & in_line;
             for (; line < last_line; ++line, from = 0) merger.touch(line, sector_range(from, in_line));
@@ -136,32 +117,12 @@ private:
         }
     }
 
-    /// Bits first … last, both included.
-    static std::uint32_t sector_range(std::uint64_t first, std::uint64_t last) {
-        return static_cast<std::uint32_t>(((std::uint64_t{2} << (last - first)) - 1) << first);
-    }
-
-    Layout make_layout(const traces::Region& r, std::uint64_t id_offset, std::uint32_t line_bytes) const {
-        Layout layout;
-        layout.base = r.base;
-        layout.stride = r.stride;
-        layout.extra = r.element_size - 1;
-        layout.id_offset = id_offset;
-        layout.aligned =
-            r.base % line_bytes == 0 && r.stride && line_bytes % r.stride == 0 && r.element_size <= r.stride;
-        if (!layout.aligned) return layout;
-        layout.first_line = r.base >> line_shift_;
-        layout.elements_shift = line_shift_ - std::countr_zero(r.stride);
-        for (std::uint64_t byte = 0; byte < line_bytes; byte += r.stride)
-            layout.sectors.push_back(sector_range(byte >> sector_shift_, (byte + layout.extra) >> sector_shift_));
-        return layout;
-    }
-
-    int line_shift_, sector_shift_, table_shift_ = 0;
-    std::uint64_t sectors_per_line_;
+    LineShape shape_;
+    bool avx512_;
+    int table_shift_ = 0;
     std::size_t max_requests_ = 0;
     std::uint32_t base_ = 0;
-    std::vector<Layout> layouts_;
+    std::vector<RegionLayout> layouts_;
     std::vector<std::uint32_t> table_;
 };
 

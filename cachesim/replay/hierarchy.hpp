@@ -1,7 +1,9 @@
-// The memory system behind the front end: requests in, counts out. Requests are collected and looked up in batches,
-// first in the L1s, then what is missing in L2; nothing comes back, so the order at each level stays that of issue.
+// The memory system behind the front end: warp accesses in, counts out. What an SM requests is collected and looked up
+// in its L1s in batches; what is missing there waits for the end of the window of rounds, then goes to L2 in order of
+// issue. Nothing comes back.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -11,59 +13,95 @@
 #include "cachesim/frontend/coalesce.hpp"
 #include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/instruction_set.hpp"
+#include "cachesim/replay/miss_window.hpp"
 #include "cachesim/replay/tally.hpp"
 
 namespace raycache::cachesim {
 
 class Hierarchy {
 public:
-    Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions)
-        : ids_(regions, gpu.l1.line_bytes),
-          coalesce_(regions, ids_, gpu.l1.line_bytes, gpu.l1.sector_bytes),
-          l1_(make_level(gpu.l1, gpu.sms * gpu.l1_per_sm, ids_.count())),
-          l2_(make_level(gpu.l2, 1, ids_.count())),
-          batch_(batch_size + coalesce_.max_requests()) {
+    Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
+        : l1_per_sm_(gpu.l1_per_sm),
+          ids_(regions, gpu.l1.line_bytes),
+          coalesce_(regions, LineShape(gpu.l1.line_bytes, gpu.l1.sector_bytes), instructions),
+          l1_(make_level(gpu.l1, gpu.sms * gpu.l1_per_sm, ids_, instructions)),
+          l2_(make_level(gpu.l2, 1, ids_, instructions)),
+          requests_(batch_size + coalesce_.max_requests()),
+          rounds_(requests_.size()),
+          misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 512), coalesce_.max_requests()) {
         for (const traces::Region& region : regions) kinds_.push_back(region.kind);
     }
 
+    /// Rounds of a window: every SM may run so many rounds ahead of the others.
+    std::size_t rounds() const { return misses_.rounds(); }
+
     void add_rays(const traces::Record& record) { tally_.add_rays(record); }
 
-    /// One warp access through this L1; `elements`: one index per active lane.
-    void access(const traces::Record& record, const std::uint32_t* elements, std::uint16_t l1) {
+    /// The warp access that an SM issues through one of its L1s in this round of the window; `elements`: one index per
+    /// active lane. Accesses of one SM come in order of rounds, accesses in one round in order of SMs; end_sm() comes
+    /// between accesses of different SMs.
+    void access(const traces::Record& record, const std::uint32_t* elements, unsigned sm, unsigned l1,
+                std::size_t round) {
         Request like;
-        like.cache = l1;
         like.group = tally_.group(record, kinds_[record.region]);
+        like.region = record.region;
+        like.cache = static_cast<std::uint8_t>(l1);
         const unsigned lanes = record.lanes();
-        const Coalesced made = coalesce_(record.region, elements, lanes, like, &batch_[pending_]);
+        const Coalesced made = coalesce_(elements, lanes, like, &requests_[pending_]);
         tally_.add_access(like.group, lanes, made.sectors);
+        misses_.reserve(round);
+        mark(round, made.requests);
         pending_ += made.requests;
-        if (pending_ >= batch_size) look_up();
+        if (pending_ >= batch_size) end_sm(sm);
     }
 
-    /// The counts so far.
-    std::vector<RayGroup> groups() {
-        look_up();
-        return tally_.groups();
-    }
-
-private:
-    static constexpr std::size_t batch_size = 1024;
-
-    void look_up() {
-        const std::size_t to_l2 = l1_->process({batch_.data(), pending_}, batch_.data());
-        tally_.add_l2({batch_.data(), to_l2});
-        const std::size_t to_dram = l2_->process({batch_.data(), to_l2}, batch_.data());
-        tally_.add_dram({batch_.data(), to_dram});
+    /// The SM's accesses so far are all for now.
+    void end_sm(unsigned sm) {
+        const std::span<Request> asked(requests_.data(), pending_);
+        l1_->process(asked, sm * l1_per_sm_);
+        tally_.add_l2(asked);
+        for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], asked[i]);
         pending_ = 0;
     }
 
+    /// All SMs have run all rounds: L2's turn.
+    void end_window() {
+        for (std::size_t round = 0; round < misses_.rounds(); ++round) {
+            const std::span<Request> asked = misses_.take(round);
+            l2_->process(asked, 0);
+            tally_.add_dram(asked);
+        }
+    }
+
+    /// The counts of all windows that have ended.
+    std::vector<RayGroup> groups() const { return tally_.groups(); }
+
+private:
+    static constexpr std::size_t batch_size = 1024;
+    /// Enough that an SM finds its L1s in the machine's caches most of the time; few enough that the misses of a window
+    /// stay there, too.
+    static constexpr std::size_t accesses_per_window = 8192;
+
+    /// Notes the round of the requests that are about to be pending.
+    void mark(std::size_t round, std::size_t requests) {
+        std::uint16_t* const rounds = &rounds_[pending_];
+        for (std::size_t i = 0; i < few; ++i)
+            rounds[i] = static_cast<std::uint16_t>(round);  // a number known beforehand
+        for (std::size_t i = few; i < requests; ++i) rounds[i] = static_cast<std::uint16_t>(round);
+    }
+    static constexpr std::size_t few = 16;
+
+    unsigned l1_per_sm_;
     LineIds ids_;
     Coalescer coalesce_;
     std::unique_ptr<Level> l1_, l2_;
     std::vector<traces::ObjectKind> kinds_;  ///< of each region
     Tally tally_;
-    std::vector<Request> batch_;
+    std::vector<Request> requests_;      ///< of one SM, not yet looked up
+    std::vector<std::uint16_t> rounds_;  ///< of each of them
     std::size_t pending_ = 0;
+    MissWindow misses_;
 };
 
 }  // namespace raycache::cachesim

@@ -18,24 +18,15 @@ using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
 
 class Multiprocessor {
 public:
-    /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 first_l1 + s mod l1_per_sm.
-    Multiprocessor(unsigned cta_slots, unsigned warps_per_cta, std::uint16_t first_l1, unsigned l1_per_sm)
-        : warps_per_cta_(warps_per_cta),
+    /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM.
+    Multiprocessor(unsigned number, unsigned cta_slots, unsigned warps_per_cta, unsigned l1_per_sm)
+        : number_(number),
+          warps_per_cta_(warps_per_cta),
           l1_per_sm_(l1_per_sm),
-          first_l1_(first_l1),
           traces_(std::size_t{cta_slots} * warps_per_cta),
           unfinished_(cta_slots) {}
 
     bool idle() const { return active_.empty(); }
-
-    /// Hints: this SM's turn comes in a while; it comes soon.
-    void prefetch_warp() const { __builtin_prefetch(active_.data() + turn_); }
-    void prefetch_access() const {
-        if (turn_ >= active_.size()) return;
-        __builtin_prefetch(active_[turn_].next);
-        __builtin_prefetch(active_[turn_].elements);
-        __builtin_prefetch(active_[turn_].elements + 16);
-    }
 
     /// Makes the warps resident, all before their first record; those without an access end here.
     void place(unsigned cta_slot, std::span<const WarpPointer> warps, Hierarchy& memory) {
@@ -46,7 +37,7 @@ public:
             const traces::WarpTrace& trace = *warps[i];
             Warp warp;
             warp.slot = cta_slot * warps_per_cta_ + static_cast<unsigned>(i);
-            warp.l1 = static_cast<std::uint16_t>(first_l1_ + warp.slot % l1_per_sm_);
+            warp.l1 = warp.slot % l1_per_sm_;
             warp.next = trace.records.data();
             warp.end = warp.next + trace.records.size();
             warp.elements = trace.elements.data();
@@ -59,27 +50,15 @@ public:
         }
     }
 
-    /// One warp access of the warp whose turn it is; not for an idle SM. Returns the CTA slot that it freed, if any.
-    std::optional<unsigned> issue(Hierarchy& memory) {
-        if (turn_ >= active_.size()) turn_ = 0;
-        Warp& warp = active_[turn_];
-        const traces::Record record = *warp.next++;
-        memory.access(record, warp.elements, warp.l1);
-        warp.elements += record.lanes();
-        // This warp's next turn comes after all others': fetch now what is far away.
-        __builtin_prefetch(warp.elements + 32);
-        __builtin_prefetch(warp.elements + 48);
-        __builtin_prefetch(warp.next + 8);
-        resume_slot_ = warp.slot + 1;
-        if (advance_to_access(warp, memory)) {
-            ++turn_;
-            return std::nullopt;
-        }
-        const unsigned cta_slot = warp.slot / warps_per_cta_;
-        traces_[warp.slot].reset();
-        active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
-        if (--unfinished_[cta_slot] > 0) return std::nullopt;
-        return cta_slot;
+    /// Takes its turn in each round from `round` up to `end`, and counts `round` up. Stops after an access that frees a
+    /// CTA slot, and returns that slot.
+    std::optional<unsigned> run(std::size_t& round, std::size_t end, Hierarchy& memory) {
+        unsigned freed = none;
+        while (round < end && !active_.empty() && freed == none) freed = issue(round++, memory);
+        memory.end_sm(number_);
+        if (freed != none) return freed;
+        round = end;
+        return std::nullopt;
     }
 
 private:
@@ -87,8 +66,34 @@ private:
         const traces::Record *next = nullptr, *end = nullptr;
         const std::uint32_t* elements = nullptr;  ///< of `next`
         unsigned slot = 0;
-        std::uint16_t l1 = 0;
+        unsigned l1 = 0;
     };
+
+    static constexpr unsigned none = ~0u;
+
+    /// One warp access of the warp whose turn it is. Returns the CTA slot that it freed, or `none`.
+    unsigned issue(std::size_t round, Hierarchy& memory) {
+        if (turn_ >= active_.size()) turn_ = 0;
+        Warp& warp = active_[turn_];
+        // The turns of a warp are far apart: fetch what the next but a few will read.
+        const std::size_t ahead = turn_ + 4;
+        const Warp& later = active_[ahead < active_.size() ? ahead : 0];
+        __builtin_prefetch(later.next + 1);
+        __builtin_prefetch(later.elements);
+        __builtin_prefetch(later.elements + 16);
+        const traces::Record record = *warp.next++;
+        memory.access(record, warp.elements, number_, warp.l1, round);
+        warp.elements += record.lanes();
+        resume_slot_ = warp.slot + 1;
+        if (advance_to_access(warp, memory)) {
+            ++turn_;
+            return none;
+        }
+        const unsigned cta_slot = warp.slot / warps_per_cta_;
+        traces_[warp.slot].reset();
+        active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
+        return --unfinished_[cta_slot] > 0 ? none : cta_slot;
+    }
 
     /// Counts ray starts up to the next access; false if there is none.
     static bool advance_to_access(Warp& warp, Hierarchy& memory) {
@@ -99,8 +104,7 @@ private:
         return false;
     }
 
-    unsigned warps_per_cta_, l1_per_sm_;
-    std::uint16_t first_l1_;
+    unsigned number_, warps_per_cta_, l1_per_sm_;
     std::vector<Warp> active_;          ///< unfinished warps by slot
     std::vector<WarpPointer> traces_;   ///< by slot: keeps the records of an unfinished warp
     std::size_t turn_ = 0;              ///< place in active_ of the next to issue; its size means 0

@@ -7,7 +7,7 @@
 
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/replay/hierarchy.hpp"
-#include "cachesim/replay/multiprocessor.hpp"
+#include "cachesim/replay/schedule.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::cachesim {
@@ -40,28 +40,27 @@ std::vector<traces::Region> checked(const std::vector<traces::Region>& regions) 
 }  // namespace
 
 struct Replay::Impl {
-    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample)
+    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample,
+         InstructionSet instructions)
         : warps_per_cta(checked(gpu).warps_per_cta),
           cta_slots(std::max(1u, gpu.warps_per_sm / gpu.warps_per_cta)),
           regions(checked(all_regions)),
           sample_index(sample),
-          memory(gpu, regions) {
-        for (unsigned sm = 0; sm < gpu.sms; ++sm)
-            sms.emplace_back(cta_slots, warps_per_cta, static_cast<std::uint16_t>(sm * gpu.l1_per_sm), gpu.l1_per_sm);
-    }
+          sms(gpu.sms),
+          memory(gpu, regions, instructions),
+          schedule(gpu, cta_slots, memory) {}
 
     void check(const traces::WarpTrace&) const;
     void place_cta();
-    std::optional<unsigned> run_until_slot_is_free();
 
-    const unsigned warps_per_cta, cta_slots;
+    const unsigned warps_per_cta, cta_slots;  ///< slots of each SM
     const std::vector<traces::Region> regions;
     const std::uint32_t sample_index;
+    const unsigned sms;
     Hierarchy memory;
-    std::vector<Multiprocessor> sms;
+    Schedule schedule;
     std::vector<WarpPointer> cta;  ///< warps of the CTA that is being pushed
     std::uint64_t placed = 0;      ///< CTAs placed so far
-    std::size_t turn = 0;          ///< SM that issues next
 };
 
 /// What is read here is never trusted to be in range later.
@@ -101,35 +100,20 @@ void Replay::Impl::place_cta() {
     if (!has_access) {  // takes no slot and no turn; its rays count
         for (const WarpPointer& warp : cta)
             for (const traces::Record& record : warp->records) memory.add_rays(record);
-    } else if (placed < std::uint64_t{cta_slots} * sms.size()) {
-        const auto sm = static_cast<std::size_t>(placed % sms.size());
-        sms[sm].place(static_cast<unsigned>(placed / sms.size()), cta, memory);
+    } else if (placed < std::uint64_t{cta_slots} * sms) {
+        schedule.place(placed % sms, static_cast<unsigned>(placed / sms), cta);
         ++placed;
-    } else if (const auto slot = run_until_slot_is_free()) {
-        sms[turn].place(*slot, cta, memory);
-        turn = (turn + 1) % sms.size();
+    } else if (const auto free = schedule.next_free()) {
+        schedule.place(free->sm, free->slot, cta);
+        schedule.resume();
         ++placed;
     }
     cta.clear();
 }
 
-/// SMs take turns until one of them ends a CTA; `turn` stays on that SM. Nothing if all have run dry.
-std::optional<unsigned> Replay::Impl::run_until_slot_is_free() {
-    for (std::size_t idle = 0; idle < sms.size(); turn = turn + 1 == sms.size() ? 0 : turn + 1) {
-        if (sms[turn].idle()) {
-            ++idle;
-            continue;
-        }
-        idle = 0;
-        if (turn + 6 < sms.size()) sms[turn + 6].prefetch_warp();
-        if (turn + 3 < sms.size()) sms[turn + 3].prefetch_access();
-        if (const auto slot = sms[turn].issue(memory)) return slot;
-    }
-    return std::nullopt;
-}
-
-Replay::Replay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample)
-    : impl_(std::make_unique<Impl>(gpu, regions, sample)) {}
+Replay::Replay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
+               InstructionSet instructions)
+    : impl_(std::make_unique<Impl>(gpu, regions, sample, instructions)) {}
 Replay::~Replay() = default;
 Replay::Replay(Replay&&) noexcept = default;
 
@@ -141,7 +125,7 @@ void Replay::push(std::shared_ptr<const traces::WarpTrace> warp) {
 
 LaunchStatistics Replay::finish() {
     if (!impl_->cta.empty()) impl_->place_cta();
-    while (impl_->run_until_slot_is_free()) impl_->turn = (impl_->turn + 1) % impl_->sms.size();
+    while (impl_->schedule.next_free()) impl_->schedule.resume();
     return {impl_->sample_index, impl_->memory.groups()};
 }
 

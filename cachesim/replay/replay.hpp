@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
@@ -28,12 +29,14 @@ class Replay {
 public:
     /// Caches start empty. `regions` is copied (without links). Throws Error if the GPU breaks a rule of
     /// cachesim/gpus/limits.hpp or a region is impossible.
-    Replay(const Gpu&, const std::vector<traces::Region>& regions, std::uint32_t sample);
+    Replay(const Gpu&, const std::vector<traces::Region>& regions, std::uint32_t sample,
+           InstructionSet = best_instruction_set());
     ~Replay();
     Replay(Replay&&) noexcept;
 
     /// Hands over the next warp of the launch, in warp order. Simulates as far as needed to make room for it, so memory
-    /// stays bounded by the warps resident at once. Throws Error if a record contradicts the regions.
+    /// stays bounded by the warps resident at once and what they miss in L1 during a few rounds. Throws Error if a
+    /// record contradicts the regions.
     void push(std::shared_ptr<const traces::WarpTrace>);
 
     /// Runs what is left and returns the counts. Call once.

@@ -1,9 +1,11 @@
 #include "cachesim/frontend/coalesce.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "cachesim/frontend/line_ids.hpp"
 #include "random_launch.hpp"
 #include "traces/error.hpp"
 
@@ -21,19 +23,31 @@ struct Touched {
     auto operator<=>(const Touched&) const = default;
 };
 
-std::vector<Touched> coalesce(const traces::Region& r, const std::vector<std::uint32_t>& elements,
-                              std::uint32_t line = 128, std::uint32_t sector = 32) {
-    const LineIds ids({r}, line);
-    Coalescer coalescer({r}, ids, line, sector);
+std::vector<Touched> coalesce(const traces::Region& r, const std::vector<std::uint32_t>& elements, std::uint32_t line,
+                              std::uint32_t sector, InstructionSet instructions) {
+    Coalescer coalescer({r}, LineShape(line, sector), instructions);
     std::vector<Request> out(coalescer.max_requests());
-    const auto made = coalescer(0, elements.data(), static_cast<unsigned>(elements.size()), {}, out.data());
+    Request like;
+    like.group = 2303;
+    like.cache = 7;
+    const auto made = coalescer(elements.data(), static_cast<unsigned>(elements.size()), like, out.data());
     std::vector<Touched> touched;
     unsigned sectors = 0;
     for (std::size_t i = 0; i < made.requests; ++i) {
         touched.push_back({out[i].line, out[i].sectors});
         sectors += static_cast<unsigned>(std::popcount(out[i].sectors));
+        CHECK((out[i].group == 2303 && out[i].region == 0 && out[i].cache == 7));
     }
     CHECK(sectors == made.sectors);
+    return touched;
+}
+
+/// By every instruction set of this machine, which must agree.
+std::vector<Touched> coalesce(const traces::Region& r, const std::vector<std::uint32_t>& elements,
+                              std::uint32_t line = 128, std::uint32_t sector = 32) {
+    const auto touched = coalesce(r, elements, line, sector, InstructionSet::x86_64_v2);
+    for (const InstructionSet instructions : instruction_sets())
+        CHECK(coalesce(r, elements, line, sector, instructions) == touched);
     return touched;
 }
 
@@ -92,6 +106,22 @@ TEST_CASE("permuting the lanes changes neither lines nor sectors") {
         std::sort(after.begin(), after.end());
         CHECK(before == after);
     }
+}
+
+TEST_CASE("every instruction set coalesces alike, for every layout of a region") {
+    std::mt19937 random(4);
+    for (const auto& [size, stride, offset] :
+         {std::array{64u, 64u, 0u}, std::array{48u, 48u, 0u}, std::array{4u, 4u, 0u}, std::array{100u, 36u, 16u},
+          std::array{128u, 130u, 127u}, std::array{129u, 129u, 1u}, std::array{80u, 0u, 64u},
+          std::array{16u, 0xfffffff0u, 0u}})
+        for (const auto& [line, sector] : {std::pair{128u, 32u}, std::pair{128u, 128u}, std::pair{64u, 8u},
+                                           std::pair{128u, 4u}, std::pair{4096u, 512u}})
+            for (unsigned lanes = 1; lanes <= traces::warp_lanes; ++lanes) {
+                const auto r = region(ObjectKind::node, (1ull << 40) + offset, size, stride, 1000);
+                std::vector<std::uint32_t> elements(lanes);
+                for (auto& e : elements) e = random() % (random() % 2 ? 8 : r.count);
+                CHECK(!coalesce(r, elements, line, sector).empty());
+            }
 }
 
 TEST_CASE("the last byte of the address space is an address like any other") {

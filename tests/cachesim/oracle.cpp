@@ -188,8 +188,8 @@ LaunchStatistics naive_replay(const Gpu& gpu, const Launch& launch, std::uint32_
     return {sample, NaiveReplay(gpu, launch).run()};
 }
 
-LaunchStatistics replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample) {
-    Replay replay(gpu, launch.regions, sample);
+LaunchStatistics replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample, InstructionSet instructions) {
+    Replay replay(gpu, launch.regions, sample, instructions);
     for (const auto& warp : launch.warps) replay.push(warp);
     return replay.finish();
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "reference_trace.hpp"
 
@@ -16,6 +17,6 @@ std::uint64_t naive_set(const CacheGeometry&, std::uint64_t line);
 LaunchStatistics naive_replay(const Gpu&, const Launch&, std::uint32_t sample = 0);
 
 /// The same launch through Replay.
-LaunchStatistics replay(const Gpu&, const Launch&, std::uint32_t sample = 0);
+LaunchStatistics replay(const Gpu&, const Launch&, std::uint32_t sample = 0, InstructionSet = best_instruction_set());
 
 }  // namespace raycache::cachesim::test

@@ -19,7 +19,9 @@ void check_equal(const Gpu& gpu, const std::vector<traces::Region>& regions, uns
                  unsigned records = 30) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const Launch launch = random_launch(regions, warps, records, seed);
-        REQUIRE(replay(gpu, launch, 7) == naive_replay(gpu, launch, 7));
+        const LaunchStatistics expected = naive_replay(gpu, launch, 7);
+        for (const InstructionSet instructions : instruction_sets())
+            REQUIRE(replay(gpu, launch, 7, instructions) == expected);
     }
 }
 
@@ -104,9 +106,13 @@ TEST_CASE("a replay equals the naive replay on the reference traces", "[slow]") 
     launch.warps.resize(80);
     for (const char* name : {"gtx-980-ti", "h100"}) {
         Gpu gpu = load_gpu(name);
-        CHECK(replay(gpu, launch) == naive_replay(gpu, launch));
+        LaunchStatistics expected = naive_replay(gpu, launch);
+        for (const InstructionSet instructions : instruction_sets())
+            CHECK(replay(gpu, launch, 0, instructions) == expected);
         gpu.sms = 3;
         gpu.l2.sets = 57;
-        CHECK(replay(gpu, launch) == naive_replay(gpu, launch));
+        expected = naive_replay(gpu, launch);
+        for (const InstructionSet instructions : instruction_sets())
+            CHECK(replay(gpu, launch, 0, instructions) == expected);
     }
 }

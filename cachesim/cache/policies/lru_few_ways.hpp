@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "cachesim/cache/request.hpp"
-
 namespace raycache::cachesim {
 
 class LruFewWays {
@@ -26,12 +24,12 @@ public:
         return sectors_per_line < 32 && lines <= std::uint64_t{1} << (32 - sectors_per_line);
     }
 
-    void prefetch(std::uint64_t set, const Request&) const { __builtin_prefetch(&words_[set * blocks_], 1); }
+    void prefetch(std::uint64_t set, std::uint64_t /*id*/) const { __builtin_prefetch(&words_[set * blocks_], 1); }
 
     /// An empty way is the word 0: no sectors. If it is taken for line 0 it is filled as any other empty way would be.
-    std::uint32_t access(std::uint64_t set, const Request& request) {
+    std::uint32_t access(std::uint64_t set, std::uint64_t id, std::uint32_t sectors) {
         Block* const block = &words_[set * blocks_];
-        const std::uint32_t tag = request.id << sector_bits_;
+        const std::uint32_t tag = static_cast<std::uint32_t>(id) << sector_bits_;
         const std::uint32_t sector_mask = (1u << sector_bits_) - 1;
         const __m128i tag_mask = _mm_set1_epi32(static_cast<int>(~sector_mask));
         const __m128i wanted = _mm_set1_epi32(static_cast<int>(tag));
@@ -44,8 +42,8 @@ public:
             const std::uint32_t old = block[0].words()[lane];
             const __m128i shifted = _mm_slli_si128(first, 4);
             const __m128i kept = _mm_blendv_epi8(first, shifted, up_to(lane));
-            block[0].lanes = _mm_insert_epi32(kept, static_cast<int>(old | request.sectors), 0);
-            return request.sectors & ~old;
+            block[0].lanes = _mm_insert_epi32(kept, static_cast<int>(old | sectors), 0);
+            return sectors & ~old;
         }
         std::uint32_t old = 0;
         for (std::uint32_t b = 1; b < blocks_; ++b) {
@@ -61,11 +59,11 @@ public:
             block[b].lanes = b + 1 < blocks_ ? shifted : _mm_blendv_epi8(here, shifted, up_to((ways_ - 1) & 3));
             before = here;
         }
-        const std::uint32_t newest = tag | (old & sector_mask) | request.sectors;
+        const std::uint32_t newest = tag | (old & sector_mask) | sectors;
         __m128i moved = _mm_insert_epi32(_mm_slli_si128(first, 4), static_cast<int>(newest), 0);
         if (blocks_ == 1) moved = _mm_blendv_epi8(first, moved, up_to(ways_ - 1));
         block[0].lanes = moved;
-        return request.sectors & ~old;
+        return sectors & ~old;
     }
 
 private:

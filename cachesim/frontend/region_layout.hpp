@@ -1,0 +1,58 @@
+// How the elements of a region lie in cache lines and sectors: all that coalescing asks of a region.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "traces/header.hpp"
+
+namespace raycache::cachesim {
+
+/// Line and sector of a GPU; sizes in bytes, powers of two, at most 32 sectors per line.
+struct LineShape {
+    LineShape(std::uint32_t line_size, std::uint32_t sector_size)
+        : line_bytes(line_size),
+          line_shift(std::countr_zero(line_size)),
+          sector_shift(std::countr_zero(sector_size)),
+          sectors(line_size / sector_size) {}
+
+    std::uint32_t line_bytes;
+    int line_shift, sector_shift;  ///< log2 of the sizes
+    std::uint32_t sectors;         ///< per line
+};
+
+/// Bits first … last, both included.
+inline std::uint32_t sector_range(std::uint64_t first, std::uint64_t last) {
+    return static_cast<std::uint32_t>(((std::uint64_t{2} << (last - first)) - 1) << first);
+}
+
+struct RegionLayout {
+    RegionLayout(const traces::Region& r, const LineShape& shape)
+        : base(r.base),
+          stride(r.stride),
+          extra(r.element_size - 1),
+          first_line(r.base >> shape.line_shift),
+          aligned(r.base % shape.line_bytes == 0 && r.stride && shape.line_bytes % r.stride == 0 &&
+                  r.element_size <= r.stride) {
+        const std::uint64_t span = std::uint64_t{r.count} * r.stride;  // cannot overflow: both are below 2^32
+        vectors = r.element_size <= shape.line_bytes && shape.sectors <= 8 && span < std::uint64_t{1} << 31;
+        start = static_cast<std::uint32_t>(r.base % shape.line_bytes);
+        if (!aligned) return;
+        elements_shift = shape.line_shift - std::countr_zero(r.stride);
+        for (std::uint64_t byte = 0; byte < shape.line_bytes; byte += r.stride)
+            sectors.push_back(sector_range(byte >> shape.sector_shift, (byte + extra) >> shape.sector_shift));
+    }
+
+    std::uint64_t base, stride, extra;   ///< extra: element size - 1
+    std::uint64_t first_line;            ///< of element 0
+    bool aligned;                        ///< a power of two of elements to a line, none straddles
+    int elements_shift = 0;              ///< aligned: log2 of elements per line
+    std::vector<std::uint32_t> sectors;  ///< aligned: of each element of a line
+    /// No element is larger than a line, a line has at most 8 sectors, and bytes counted from the start of the first
+    /// line fit 32 bits: what coalesce_avx512() needs.
+    bool vectors = false;
+    std::uint32_t start = 0;  ///< byte of element 0 in its line
+};
+
+}  // namespace raycache::cachesim
