@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import unittest
 
-from support import GPU, LAUNCHES, SCENE, ProgramTest, main
+from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 RENDER = ["render", *SCENE, "--resolution", "128x96", "--spp", "1"]
 CAPTURE = ["capture", *SCENE, *LAUNCHES]
@@ -163,6 +163,17 @@ class BadGpus(ProgramTest):
         row = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, "--strategy", "coherent", "--gpu", "gpu.toml",
                             "--json").json["rows"][0]
         self.assertEqual(row["gpu"], "tiny")
+
+    def test_bytes_follow_the_sector_size_of_the_file(self):
+        for size in (32, 64):
+            self.path("gpu.toml").write_text(GPU_FILE.replace(
+                "sector_bytes = { value = 32", f"sector_bytes = {{ value = {size}"))
+            row = self.warns("compare", "--scene", *SCENE, *PICTURE, "--trace-samples", "1", "--strategy", "coherent",
+                             "--gpu", "gpu.toml", "--json").json["rows"][0]
+            for bytes_per_ray, sectors in (("l2_bytes_per_ray", "l2_sectors"), ("dram_bytes_per_ray", "dram_sectors")):
+                with self.subTest(f"{bytes_per_ray}, {size}"):
+                    totals = row["totals"]
+                    self.assertAlmostEqual(row[bytes_per_ray]["mean"], size * totals[sectors] / totals["rays"])
 
     def test_a_missing_file(self):
         self.refuses(1, "compare", "--scene", *SCENE, "--gpu", "missing.toml", mentions=["missing.toml"])

@@ -57,10 +57,8 @@ TEST_CASE("micro-jitter misses less than cranley-patterson in L1 and in L2, with
     }
     INFO(name << ", " << sequence << ", N = " << spp);
     const auto traffic = [&](const char* strategy) {
-        // The courtyard's leaves make sample indices differ most, and coarser pixels see different leaves.
-        auto settings = capture_settings(strategy, sequence, spp, name == "courtyard" ? 8 : 5);
-        settings.width = settings.height = 384;
-        return measure(*scene, settings);
+        // In the courtyard, all leaves and slats, sample indices differ most.
+        return measure(*scene, capture_settings(strategy, sequence, spp, name == "courtyard" ? 20 : 6));
     };
     const auto rotated = traffic("cranley-patterson"), jittered = traffic("micro-jitter");
     CHECK(lower(jittered, rotated, &Traffic::l2_bytes));
