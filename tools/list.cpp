@@ -8,6 +8,7 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/gpu_details.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
@@ -46,10 +47,17 @@ std::vector<Topic> all_topics() {
 
 struct Options {
     std::string topic;
-    bool json = false;
+    bool json = false, details = false;
 };
 
 void run(const Options& o) {
+    if (o.details) {
+        if (o.topic != "gpus")
+            throw UsageError(
+                fmt::format("--details with topic '{}'; expected 'raycache list gpus --details'", o.topic));
+        print(o.json ? gpu_details_json() : gpu_details_text());
+        return;
+    }
     std::vector<Topic> topics = all_topics();
     if (!o.topic.empty()) {
         std::string valid;
@@ -79,7 +87,10 @@ void add_list(CLI::App& app) {
         app.add_subcommand("list", "List strategies, sequences, GPUs, layouts, thread maps, built-in scenes");
     command->add_option("TOPIC", o->topic, "strategies, sequences, gpus, layouts, thread-maps or scenes; default: all");
     command->add_flag("--json", o->json, "print JSON");
-    command->footer("Examples:\n  raycache list\n  raycache list gpus --json");
+    command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
+    command->footer(
+        "Examples:\n  raycache list\n  raycache list gpus --json\n  raycache list gpus --details\n"
+        "  raycache list gpus --details --json");
     command->callback([o] { run(*o); });
 }
 

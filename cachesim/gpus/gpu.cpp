@@ -39,18 +39,33 @@ std::string read_file(const std::string& path) {
     return text;
 }
 
-}  // namespace
+/// A GPU file and what errors call it.
+struct GpuText {
+    std::string toml, file;
+};
 
-Gpu load_gpu(const std::string& name_or_path) {
+GpuText find_text(const std::string& name_or_path) {
     if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
-        return parse_gpu(read_file(name_or_path), name_or_path);
+        return {read_file(name_or_path), name_or_path};
     std::vector<std::string> names;
     for (const PresetText& preset : preset_texts()) {
-        if (preset.name == name_or_path) return parse_gpu(preset.toml, preset.name + ".toml");
+        if (preset.name == name_or_path) return {preset.toml, preset.name + ".toml"};
         names.push_back(preset.name);
     }
     throw UsageError(fmt::format("GPU: expected one of {} or the path of a .toml file, found \"{}\"",
                                  fmt::join(names, ", "), name_or_path));
+}
+
+}  // namespace
+
+Gpu load_gpu(const std::string& name_or_path) {
+    const GpuText text = find_text(name_or_path);
+    return parse_gpu(text.toml, text.file);
+}
+
+std::vector<GpuValue> gpu_values(const std::string& name_or_path) {
+    const GpuText text = find_text(name_or_path);
+    return parse_gpu_values(text.toml, text.file);
 }
 
 std::vector<GpuPreset> gpu_presets() {

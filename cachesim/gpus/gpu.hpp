@@ -43,4 +43,13 @@ struct GpuPreset {
 /// Presets compiled into the program, sorted by name.
 std::vector<GpuPreset> gpu_presets();
 
+/// One value of a GPU file, as it is written there.
+struct GpuValue {
+    std::string key;     ///< "sms", "l1.ways"
+    std::string value;   ///< "22", "modulo"
+    std::string source;  ///< who says so, or "assumed…"; empty if the file gives none
+};
+/// Every value except name and description, in the order of the fields of Gpu. Takes and throws what load_gpu() does.
+std::vector<GpuValue> gpu_values(const std::string& name_or_path);
+
 }  // namespace raycache::cachesim

@@ -61,8 +61,8 @@ public:
         return gpu;
     }
 
-    /// Keys whose source is absent or empty; read() must have passed.
-    const std::vector<std::string>& without_source() const { return without_source_; }
+    /// In the order in which read() met them; it must have passed.
+    const std::vector<GpuValue>& values() const { return values_; }
 
 private:
     [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
@@ -115,7 +115,7 @@ private:
         lines_[name] = line_of(node);
         const toml::table* pair = node.as_table();
         if (!pair) {
-            without_source_.push_back(name);
+            values_.push_back({name, "", ""});
             return node;
         }
         static constexpr const char* pair_keys[] = {"value", "source"};
@@ -123,7 +123,7 @@ private:
         const toml::node& source = find(*pair, name + ".", "source");
         if (!source.is_string())
             fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));
-        if (source.value_or(std::string()).empty()) without_source_.push_back(name);
+        values_.push_back({name, "", one_line(source.value_or(std::string()))});
         return find(*pair, name + ".", "value");
     }
 
@@ -137,6 +137,7 @@ private:
         const std::int64_t found = integer->get();
         if (found <= 0 || static_cast<std::uint64_t>(found) > std::numeric_limits<Integer>::max())
             fail(line_of(node), prefix + key, fmt::format("{}, found {}", expected, found));
+        values_.back().value = fmt::format("{}", found);
         return static_cast<Integer>(found);
     }
 
@@ -146,23 +147,24 @@ private:
         if (!string || string->get().empty())
             fail(line_of(node), prefix + key,
                  fmt::format("expected a text, found {}", string ? "an empty one" : type_name(node)));
+        if (!prefix.empty()) values_.back().value = one_line(string->get());
         return one_line(string->get());
     }
 
     std::string file_;
     toml::table root_;
     std::map<std::string, std::size_t> lines_;  ///< of the values read so far
-    std::vector<std::string> without_source_;
+    std::vector<GpuValue> values_;
 };
 
 }  // namespace
 
 Gpu parse_gpu(const std::string& toml, const std::string& file) { return GpuFile(toml, file).read(); }
 
-std::vector<std::string> values_without_source(const std::string& toml, const std::string& file) {
+std::vector<GpuValue> parse_gpu_values(const std::string& toml, const std::string& file) {
     GpuFile gpu(toml, file);
     gpu.read();
-    return gpu.without_source();
+    return gpu.values();
 }
 
 }  // namespace raycache::cachesim

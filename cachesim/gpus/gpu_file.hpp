@@ -25,7 +25,7 @@ namespace raycache::cachesim {
 /// `file` is named in errors: "FILE:LINE: KEY: expected …, found …; …".
 Gpu parse_gpu(const std::string& toml, const std::string& file);
 
-/// Keys of the values that are given without a source, such as "l1.ways".
-std::vector<std::string> values_without_source(const std::string& toml, const std::string& file);
+/// Every value with its source: see gpu_values().
+std::vector<GpuValue> parse_gpu_values(const std::string& toml, const std::string& file);
 
 }  // namespace raycache::cachesim

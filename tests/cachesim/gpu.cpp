@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/limits.hpp"
@@ -77,14 +78,57 @@ TEST_CASE("every preset loads under its file name, with a source beside every nu
     for (const PresetText& preset : preset_texts()) {
         CAPTURE(preset.name);
         CHECK(load_gpu(preset.name).name == preset.name);
-        CHECK(values_without_source(preset.toml, preset.name).empty());
+        const auto values = gpu_values(preset.name);
+        CHECK(values.size() == 16);
+        for (const GpuValue& value : values) {
+            CAPTURE(value.key);
+            CHECK_FALSE(value.value.empty());
+            CHECK_FALSE(value.source.empty());
+        }
         const std::string path = RAYCACHE_SOURCE_DIR "/cachesim/gpus/" + preset.name + ".toml";
         CHECK(load_gpu(path).l2.bytes() == load_gpu(preset.name).l2.bytes());
     }
-    CHECK(load_gpu("gtx-980-ti").l1.bytes() == 24 * 1024);
-    CHECK(load_gpu("gtx-980-ti").l2.bytes() == 3 * 1024 * 1024);
-    CHECK(load_gpu("h100").l1.bytes() == 256 * 1024);
-    CHECK(load_gpu("h100").l2.bytes() == 50 * 1024 * 1024);
+}
+
+TEST_CASE("every preset has the SMs and capacities of the table of known GPUs") {
+    struct Known {
+        const char* name;
+        unsigned sms, l1_per_sm, l1_kib;
+        double l2_mib;
+        unsigned warps_per_sm, most_warps_per_sm;
+    };
+    const Known table[] = {{"a100", 108, 1, 192, 40, 12, 64},     {"gtx-980-ti", 22, 2, 24, 3, 40, 64},
+                           {"h100", 114, 1, 256, 50, 12, 64},     {"h100-sxm", 132, 1, 256, 50, 12, 64},
+                           {"rtx-2060", 30, 1, 64, 3, 12, 32},    {"rtx-2080-ti", 68, 1, 64, 5.5, 12, 32},
+                           {"rtx-3070", 46, 1, 128, 4, 12, 48},   {"rtx-3090", 82, 1, 128, 6, 12, 48},
+                           {"rtx-4090", 128, 1, 128, 72, 12, 48}, {"titan-x-pascal", 28, 1, 48, 3, 40, 64},
+                           {"v100", 80, 1, 128, 6, 12, 64}};
+    CHECK(gpu_presets().size() == std::size(table));
+    for (const Known& known : table) {
+        CAPTURE(known.name);
+        const Gpu gpu = load_gpu(known.name);
+        CHECK(gpu.sms == known.sms);
+        CHECK(gpu.l1_per_sm == known.l1_per_sm);
+        CHECK(gpu.l1.bytes() == known.l1_kib * 1024);
+        CHECK(static_cast<double>(gpu.l2.bytes()) == known.l2_mib * 1024 * 1024);
+        CHECK(gpu.warps_per_sm == known.warps_per_sm);
+        CHECK(gpu.warps_per_sm <= known.most_warps_per_sm);
+        CHECK(gpu.l1.line_bytes == 128);
+        CHECK(gpu.l1.sector_bytes == 32);
+    }
+}
+
+TEST_CASE("the values of a GPU file come with their sources, and without where the file gives none") {
+    const auto values = parse_gpu_values(good, "f.toml");
+    REQUIRE(values.size() == 16);
+    CHECK(values[0].key == "sms");
+    CHECK(values[0].value == "2");
+    CHECK(values[0].source.empty());
+    CHECK(values[11].key == "l2.ways");
+    CHECK(values[11].value == "6");
+    CHECK(values[11].source == "made up");
+    CHECK(values[14].key == "l2.index");
+    CHECK(values[14].value == "xor_fold");
 }
 
 TEST_CASE("an unknown preset is bad use and lists the valid names") {

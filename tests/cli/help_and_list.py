@@ -49,6 +49,25 @@ class HelpAndList(ProgramTest):
                 self.assertIn(f"  {entry['name']}", text)
             self.assertEqual(self.succeeds("list", topic, "--json").json, {topic: entries})
 
+    def test_the_details_of_the_gpus_give_every_value_with_its_source_in_text_and_in_json(self):
+        listed = self.succeeds("list", "gpus", "--json").json["gpus"]
+        gpus = self.succeeds("list", "gpus", "--details", "--json").json["gpus"]
+        self.assertEqual([gpu["name"] for gpu in gpus], [gpu["name"] for gpu in listed])
+        text = self.succeeds("list", "gpus", "--details").text
+        for gpu in gpus:
+            values = [gpu[key] for key in ("sms", "warps_per_sm", "warps_per_cta", "l1_per_sm")]
+            for cache in (gpu["l1"], gpu["l2"]):
+                values += [cache[key] for key in ("sets", "ways", "line_bytes", "sector_bytes", "index", "policy")]
+                self.assertEqual(cache["bytes"], cache["sets"]["value"] * cache["ways"]["value"] * 128)
+            for value in values:
+                self.assertGreater(len(value["source"]), 6, gpu["name"])
+                self.assertIn(f"{value['value']}  {value['source']}\n", text)
+            self.assertRegex(text, rf"(?m)^{gpu['name']} +{gpu['sms']['value']} .* {gpu['l1']['bytes'] // 1024} ")
+
+    def test_details_are_refused_where_there_are_none(self):
+        self.refuses(2, "list", "--details", mentions=["list gpus --details"])
+        self.refuses(2, "list", "scenes", "--details", mentions=["scenes"])
+
     def test_every_listed_strategy_sequence_gpu_and_thread_map_works(self):
         listed = {topic: ",".join(entry["name"] for entry in entries)
                   for topic, entries in self.succeeds("list", "--json").json.items()}

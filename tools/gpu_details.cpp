@@ -1,0 +1,81 @@
+#include "tools/gpu_details.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/report/table.hpp"
+
+namespace raycache::tools {
+namespace {
+
+const char* index_name(cachesim::SetIndex index) { return index == cachesim::SetIndex::modulo ? "modulo" : "xor_fold"; }
+
+std::string shape(const cachesim::CacheGeometry& cache) { return fmt::format("{} x {}", cache.sets, cache.ways); }
+
+}  // namespace
+
+std::string gpu_details_text() {
+    using Align = cachesim::TextTable::Align;
+    cachesim::TextTable table;
+    table.column("GPU", Align::left);
+    for (const char* title : {"SMs", "warps/SM", "warps/CTA", "L1/SM", "L1 KiB", "sets x ways"})
+        table.column(title, Align::right);
+    table.column("index", Align::left);
+    table.column("policy", Align::left);
+    for (const char* title : {"L2 MiB", "sets x ways"}) table.column(title, Align::right);
+    table.column("index", Align::left);
+    table.column("policy", Align::left);
+    table.column("line/sector B", Align::right);
+
+    std::string values;
+    for (const cachesim::GpuPreset& preset : cachesim::gpu_presets()) {
+        const cachesim::Gpu gpu = cachesim::load_gpu(preset.name);
+        table.row(
+            {gpu.name, fmt::format("{}", gpu.sms), fmt::format("{}", gpu.warps_per_sm),
+             fmt::format("{}", gpu.warps_per_cta), fmt::format("{}", gpu.l1_per_sm),
+             fmt::format("{}", static_cast<double>(gpu.l1.bytes()) / 1024), shape(gpu.l1), index_name(gpu.l1.index),
+             gpu.l1.policy, fmt::format("{}", static_cast<double>(gpu.l2.bytes()) / (1024 * 1024)), shape(gpu.l2),
+             index_name(gpu.l2.index), gpu.l2.policy, fmt::format("{}/{}", gpu.l1.line_bytes, gpu.l1.sector_bytes)});
+        values += fmt::format("\n{}: {}\n", gpu.name, gpu.description);
+        const auto all = cachesim::gpu_values(preset.name);
+        std::size_t keys = 0, widths = 0;
+        for (const auto& v : all) {
+            keys = std::max(keys, v.key.size());
+            widths = std::max(widths, v.value.size());
+        }
+        for (const auto& v : all)
+            values += fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source);
+    }
+    return table.text() + "\nL1 KiB: of one L1; L1/SM: how many an SM has; sets x ways: of the L1, then of the L2\n" +
+           values;
+}
+
+std::string gpu_details_json() {
+    nlohmann::ordered_json gpus = nlohmann::ordered_json::array();
+    for (const cachesim::GpuPreset& preset : cachesim::gpu_presets()) {
+        const cachesim::Gpu gpu = cachesim::load_gpu(preset.name);
+        nlohmann::ordered_json& out = gpus.emplace_back();
+        out["name"] = gpu.name;
+        out["description"] = gpu.description;
+        for (const auto& [key, value, source] : cachesim::gpu_values(preset.name)) {
+            const bool number = value.find_first_not_of("0123456789") == std::string::npos;
+            const nlohmann::ordered_json given = {
+                {"value", number ? nlohmann::ordered_json(std::stoull(value)) : nlohmann::ordered_json(value)},
+                {"source", source}};
+            const auto dot = key.find('.');
+            if (dot == std::string::npos) {
+                out[key] = given;
+                continue;
+            }
+            const std::string level = key.substr(0, dot);
+            if (!out.contains(level)) out[level]["bytes"] = (level == "l1" ? gpu.l1 : gpu.l2).bytes();
+            out[level][key.substr(dot + 1)] = given;
+        }
+    }
+    return nlohmann::ordered_json{{"gpus", gpus}}.dump(2) + "\n";
+}
+
+}  // namespace raycache::tools

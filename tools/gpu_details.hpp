@@ -1,0 +1,15 @@
+// What the GPU presets say, value by value: raycache list gpus --details.
+#pragma once
+
+#include <string>
+
+namespace raycache::tools {
+
+/// A table with one row per preset, then every value with its source.
+std::string gpu_details_text();
+
+/// {"gpus": [{"name", "description", "sms": {"value", "source"}, …, "l1": {"bytes", "sets": {"value", "source"}, …},
+/// …}]}
+std::string gpu_details_json();
+
+}  // namespace raycache::tools
