@@ -6,6 +6,7 @@
 
 #include "cachesim/replay/replay.hpp"
 #include "tools/console.hpp"
+#include "traces/read_launch.hpp"
 #include "traces/reader.hpp"
 
 namespace raycache::tools {
@@ -80,14 +81,7 @@ std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths
         readers.push_back(std::make_unique<traces::Reader>(path));
         const traces::Reader* reader = readers.back().get();
         sources.push_back({&reader->header(), [reader](std::uint32_t launch, const Sink& sink) {
-                               const auto& blocks = reader->blocks();
-                               const auto begin = std::partition_point(
-                                   blocks.begin(), blocks.end(), [&](const auto& b) { return b.launch < launch; });
-                               std::vector<traces::WarpTrace> warps;
-                               for (auto b = begin; b != blocks.end() && b->launch == launch; ++b) {
-                                   reader->read_block(static_cast<std::size_t>(b - blocks.begin()), warps);
-                                   for (traces::WarpTrace& warp : warps) sink(std::move(warp));
-                               }
+                               traces::read_launch(*reader, launch, sink);
                            }});
     }
     return replay(sources, gpus);

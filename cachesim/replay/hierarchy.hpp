@@ -15,6 +15,7 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/miss_window.hpp"
+#include "cachesim/replay/request_sink.hpp"
 #include "cachesim/replay/tally.hpp"
 
 namespace raycache::cachesim {
@@ -29,9 +30,13 @@ public:
           l2_(make_level(gpu.l2, 1, ids_, instructions)),
           requests_(batch_size + coalesce_.max_requests()),
           rounds_(requests_.size()),
+          line_bytes_(gpu.l1.line_bytes),
           misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 512), coalesce_.max_requests()) {
         for (const traces::Region& region : regions) kinds_.push_back(region.kind);
     }
+
+    /// From now on the sink, which must outlive this object, hears of the caches that it wants.
+    void observe(RequestSink& sink) { sink_ = &sink; }
 
     /// Rounds of a window: every SM may run so many rounds ahead of the others.
     std::size_t rounds() const { return misses_.rounds(); }
@@ -59,7 +64,11 @@ public:
     /// The SM's accesses so far are all for now.
     void end_sm(unsigned sm) {
         const std::span<Request> asked(requests_.data(), pending_);
+        const bool observed = sink_ && sink_->wants_l1(sm);
+        if (observed) note(asked);
         l1_->process(asked, sm * l1_per_sm_);
+        if (observed)
+            for (std::size_t i = 0; i < pending_; ++i) sink_->l1(served(i, asked[i], sm, asked[i].cache));
         tally_.add_l2(asked);
         for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], asked[i]);
         pending_ = 0;
@@ -69,7 +78,11 @@ public:
     void end_window() {
         for (std::size_t round = 0; round < misses_.rounds(); ++round) {
             const std::span<Request> asked = misses_.take(round);
+            const bool observed = sink_ && sink_->wants_l2();
+            if (observed) note(asked);
             l2_->process(asked, 0);
+            if (observed)
+                for (std::size_t i = 0; i < asked.size(); ++i) sink_->l2(served(i, asked[i], 0, 0));
             tally_.add_dram(asked);
         }
     }
@@ -92,6 +105,17 @@ private:
     }
     static constexpr std::size_t few = 16;
 
+    /// Keeps what is asked: the answer will stand in its place.
+    void note(std::span<const Request> asked) {
+        noted_.clear();
+        for (const Request& request : asked) noted_.push_back(request.sectors);
+    }
+    /// Request i of those noted, now answered.
+    ServedRequest served(std::size_t i, const Request& answer, unsigned sm, unsigned cache) const {
+        const GroupKey key = tally_.key(answer.group);
+        return {answer.line * line_bytes_, noted_[i], answer.sectors, sm, cache, key.ray, key.bounce, key.kind};
+    }
+
     unsigned l1_per_sm_;
     LineIds ids_;
     Coalescer coalesce_;
@@ -101,6 +125,9 @@ private:
     std::vector<Request> requests_;      ///< of one SM, not yet looked up
     std::vector<std::uint16_t> rounds_;  ///< of each of them
     std::size_t pending_ = 0;
+    std::uint32_t line_bytes_;
+    RequestSink* sink_ = nullptr;
+    std::vector<std::uint32_t> noted_;  ///< sectors asked for, while a level answers and the sink listens
     MissWindow misses_;
 };
 

@@ -117,6 +117,8 @@ Replay::Replay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::
 Replay::~Replay() = default;
 Replay::Replay(Replay&&) noexcept = default;
 
+void Replay::observe(RequestSink& sink) { impl_->memory.observe(sink); }
+
 void Replay::push(std::shared_ptr<const traces::WarpTrace> warp) {
     impl_->check(*warp);
     impl_->cta.push_back(std::move(warp));

@@ -19,6 +19,7 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
+#include "cachesim/replay/request_sink.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
@@ -33,6 +34,10 @@ public:
            InstructionSet = best_instruction_set());
     ~Replay();
     Replay(Replay&&) noexcept;
+
+    /// The sink hears of the caches that it wants. Call before the first push; the sink must outlive the replay. Costs
+    /// nothing where no sink listens, and changes no count where one does.
+    void observe(RequestSink&);
 
     /// Hands over the next warp of the launch, in warp order. Simulates as far as needed to make room for it, so memory
     /// stays bounded by the warps resident at once and what they miss in L1 during a few rounds. Throws Error if a

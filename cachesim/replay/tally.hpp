@@ -14,6 +14,13 @@
 
 namespace raycache::cachesim {
 
+/// What the members of a group have in common.
+struct GroupKey {
+    traces::RayType ray{};
+    std::uint8_t bounce = 0;
+    traces::ObjectKind kind{};
+};
+
 class Tally {
 public:
     Tally() { first_group_.fill(absent); }
@@ -25,9 +32,13 @@ public:
         if (first == absent) [[unlikely]] {
             first = static_cast<std::uint16_t>(counters_.size());
             counters_.resize(counters_.size() + traces::object_kinds);
+            for (unsigned k = 0; k < traces::object_kinds; ++k)
+                keys_.push_back({record.ray, record.bounce, static_cast<traces::ObjectKind>(k)});
         }
         return static_cast<std::uint16_t>(first + static_cast<unsigned>(kind));
     }
+
+    GroupKey key(std::uint16_t group) const { return keys_[group]; }
 
     /// A ray-start record.
     void add_rays(const traces::Record& record) {
@@ -58,6 +69,7 @@ private:
     static constexpr std::uint16_t absent = 0xffff;
     std::array<std::uint16_t, traces::ray_types*(traces::max_bounce + 1)> first_group_{};
     std::vector<Counters> counters_;  ///< object_kinds per (ray type, bounce); rays stand in the first of them
+    std::vector<GroupKey> keys_;      ///< of each of them
 };
 
 }  // namespace raycache::cachesim

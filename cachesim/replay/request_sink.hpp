@@ -1,0 +1,36 @@
+// Who listens to a replay: every look-up of chosen caches, in the order in which the cache answers them.
+//
+// The order within one cache is exactly that of the replay; so is the order among the L1s of one SM. Look-ups of
+// different SMs come in batches, an SM at a time: their order says nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "traces/header.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+/// One look-up: some sectors of one line, on behalf of one warp access.
+struct ServedRequest {
+    std::uint64_t address = 0;  ///< of the line's first byte
+    std::uint32_t asked = 0;    ///< bit s = sector s of the line was asked for; never 0
+    std::uint32_t missing = 0;  ///< those of `asked` that were not there
+    std::uint32_t sm = 0;       ///< whose L1; 0 for L2
+    std::uint32_t cache = 0;    ///< which L1 of the SM; 0 for L2
+    traces::RayType ray = {};   ///< of the warp access, as are the next two
+    std::uint8_t bounce = 0;
+    traces::ObjectKind kind = {};
+};
+
+class RequestSink {
+public:
+    virtual ~RequestSink() = default;
+
+    virtual bool wants_l1(std::uint32_t sm) const = 0;  ///< whether to hear of the L1s of this SM
+    virtual bool wants_l2() const = 0;
+    virtual void l1(const ServedRequest&) = 0;
+    virtual void l2(const ServedRequest&) = 0;
+};
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""raycache export: what a cache is asked, for other tools."""
+import csv
+
+from support import ProgramTest, main
+
+H100 = ["--gpu", "h100"]
+
+
+class Export(ProgramTest):
+    def test_the_rows_of_all_sms_and_of_l2_add_up_to_the_replay(self):
+        trace = self.capture("trace.rct", "--bounces", "1")
+        self.path("tiny.toml").write_text("""name = "tiny"
+description = "two SMs"
+sms = 2
+warps_per_sm = 8
+warps_per_cta = 4
+l1_per_sm = 1
+[l1]
+sets = 4
+ways = 16
+line_bytes = 128
+sector_bytes = 32
+index = "modulo"
+policy = "lru"
+[l2]
+sets = 64
+ways = 16
+line_bytes = 128
+sector_bytes = 32
+index = "xor_fold"
+policy = "lru"
+""")
+        totals = self.succeeds("replay", trace, "--gpu", "tiny.toml", "--json").json["rows"][0]["totals"]
+        sums = {"sectors": 0, "l1_hits": 0, "l2_sectors": 0, "l2_hits": 0}
+        for launch in (0, 1):
+            for sm in (["--sm", "0"], ["--sm", "1"], ["--level", "l2"]):
+                self.succeeds("export", trace, "--gpu", "tiny.toml", *sm, "--launch", launch, "--format", "csv", "-o",
+                              "x.csv")
+                with open(self.path("x.csv"), encoding="ascii") as file:
+                    rows = list(csv.DictReader(file))
+                level = "l2" if "l2" in sm else "l1"
+                sums["l2_sectors" if level == "l2" else "sectors"] += len(rows)
+                sums[level + "_hits"] += sum(row["hit"] == "1" for row in rows)
+        totals["l2_hits"] = totals["l2_sectors"] - totals["dram_sectors"]
+        self.assertEqual(sums, {key: totals[key] for key in sums})
+
+    def test_dinero_and_u64_files_hold_the_same_sectors_and_nothing_is_printed(self):
+        trace = self.capture()
+        for form in ("dinero", "u64"):
+            self.assertEqual(self.succeeds("export", trace, *H100, "--sm", "3", "--format", form, "-o", form).stdout, b"")
+        words = self.path("u64").read_bytes()
+        wanted = "".join(f"0 {int.from_bytes(words[i:i + 8], 'little'):x}\n" for i in range(0, len(words), 8))
+        self.assertEqual(self.path("dinero").read_text(), wanted)
+        self.assertGreater(len(words), 8000)
+
+    def test_a_choice_that_does_not_exist_is_refused(self):
+        trace = self.capture()
+        out = ["--format", "u64", "-o", "x"]
+        self.refuses(2, "export", trace, *H100, "--sm", "114", *out, mentions=["--sm 114", "0 to 113"])
+        self.refuses(2, "export", trace, *H100, *out, mentions=["--sm"])
+        self.refuses(2, "export", trace, *H100, "--sm", "-1", *out)
+        self.refuses(2, "export", trace, "--sm", "0", *out, mentions=["--gpu"])
+        self.refuses(2, "export", trace, "--gpu", "gtx-970", "--sm", "0", *out, mentions=["gtx-970"])
+        self.refuses(2, "export", trace, *H100, "--sm", "0", "--l1", "1", *out, mentions=["--l1 1"])
+        self.refuses(2, "export", trace, "--gpu", "gtx-980-ti", "--sm", "0", *out, mentions=["--l1", "0 to 1"])
+        self.refuses(2, "export", trace, *H100, "--level", "l3", *out, mentions=["l3"])
+        self.refuses(2, "export", trace, *H100, "--level", "l2", "--sm", "0", *out, mentions=["--sm"])
+        self.refuses(2, "export", trace, *H100, "--sm", "0", "--launch", "2", *out, mentions=["--launch 2", "0 to 1"])
+        self.refuses(2, "export", trace, *H100, "--sm", "0", "--format", "vcd", "-o", "x", mentions=["vcd", "dinero"])
+
+    def test_files_that_cannot_be_read_or_written_are_refused(self):
+        trace = self.capture()
+        what = [*H100, "--sm", "0", "--format", "u64", "-o"]
+        self.refuses(1, "export", trace, *what, "no/such/folder/x", mentions=["no/such/folder/x"])
+        self.path("folder").mkdir()
+        self.refuses(1, "export", trace, *what, "folder", mentions=["folder"])
+        self.refuses(1, "export", "missing.rct", *what, "x", mentions=["missing.rct"])
+        self.path("cut.rct").write_bytes(trace.read_bytes()[:-100])
+        self.refuses(1, "export", "cut.rct", *what, "x", mentions=["cut.rct"])
+
+
+if __name__ == "__main__":
+    main()

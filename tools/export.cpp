@@ -1,0 +1,117 @@
+// raycache export: a trace, or what a cache is asked during its replay, for other tools.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cachesim/export/sector_stream.hpp"
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/replay.hpp"
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+#include "traces/read_launch.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::string trace, format, gpu, level = "l1", output;
+    std::optional<std::uint32_t> sm, l1;
+    std::uint32_t launch = 0;
+};
+
+const cachesim::SectorFormat* find_sector_format(const std::string& name) {
+    for (const cachesim::SectorFormat& format : cachesim::sector_formats())
+        if (format.name == name) return &format;
+    return nullptr;
+}
+
+std::string format_names() {
+    std::string names;
+    for (const cachesim::SectorFormat& format : cachesim::sector_formats())
+        names += (names.empty() ? "" : ", ") + format.name;
+    return names;
+}
+
+void check_launch(const Options& o, const traces::Header& header) {
+    if (o.launch >= header.launches.size())
+        throw UsageError(fmt::format("--launch {}; expected 0 to {}, the launches of {}", o.launch,
+                                     header.launches.size() - 1, o.trace));
+}
+
+/// Which cache, or UsageError.
+cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gpu& gpu,
+                                            const cachesim::SectorFormat& format) {
+    if (o.level != "l1" && o.level != "l2")
+        throw UsageError(fmt::format("--level '{}'; expected one of: l1, l2", o.level));
+    if (o.level == "l2") {
+        if (o.sm || o.l1) throw UsageError("--sm or --l1 with --level l2; expected neither: all SMs share L2");
+        return {};
+    }
+    if (!o.sm) throw UsageError(fmt::format("--sm is missing; expected 0 to {} for {}", gpu.sms - 1, gpu.name));
+    if (*o.sm >= gpu.sms)
+        throw UsageError(fmt::format("--sm {}; expected 0 to {} for {}", *o.sm, gpu.sms - 1, gpu.name));
+    if (o.l1 && *o.l1 >= gpu.l1_per_sm)
+        throw UsageError(fmt::format("--l1 {}; expected 0 to {} for {}", *o.l1, gpu.l1_per_sm - 1, gpu.name));
+    if (!o.l1 && gpu.l1_per_sm > 1 && !format.names_cache)
+        throw UsageError(
+            fmt::format("--l1 is missing; expected 0 to {}: an SM of {} has {} L1s, and --format {} cannot tell them "
+                        "apart (csv can)",
+                        gpu.l1_per_sm - 1, gpu.name, gpu.l1_per_sm, format.name));
+    return {o.sm, o.l1};
+}
+
+void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
+    if (o.gpu.empty()) throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
+    const cachesim::Gpu gpu = cachesim::load_gpu(o.gpu);
+    const auto choice = choose_cache(o, gpu, format);
+    const traces::Reader reader(o.trace);
+    const traces::Header& header = reader.header();
+    check_launch(o, header);
+
+    traces::OutputFile file(o.output);
+    cachesim::SectorStream stream(choice, format, gpu.l1.sector_bytes,
+                                  [&](std::string_view piece) { file.write(piece); });
+    cachesim::Replay replay(gpu, header.regions, header.launches[o.launch]);
+    replay.observe(stream);
+    ProgressBar bar("export", header.warps_per_launch, "warps");
+    traces::read_launch(reader, o.launch, [&](traces::WarpTrace&& warp) {
+        replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
+        bar.add(1, 1);
+    });
+    replay.finish();
+    stream.flush();
+    file.commit();
+}
+
+void run(const Options& o) {
+    const cachesim::SectorFormat* sectors = find_sector_format(o.format);
+    if (!sectors) throw UsageError(fmt::format("--format '{}'; expected one of: {}", o.format, format_names()));
+    export_sectors(o, *sectors);
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("export", "Write what a cache is asked during a replay, for other tools");
+    command->add_option("TRACE", o->trace, "trace file")->required();
+    command->add_option("--format", o->format, "dinero (\"0 HEX\" a line), u64 (8 bytes a sector) or csv")->required();
+    command->add_option("-o,--output", o->output, "file to write")->required();
+    command->add_option("--launch", o->launch, "which launch of the trace; each begins with empty caches")
+        ->capture_default_str();
+    command->add_option("--gpu", o->gpu, "GPU preset or FILE.toml (see 'raycache list gpus')");
+    command->add_option("--level", o->level, "l1: the L1 of one SM; l2: the L2 that all SMs share")
+        ->capture_default_str();
+    command->add_option("--sm", o->sm, "the SM whose L1 is meant, from 0");
+    command->add_option("--l1", o->l1, "which of its L1s, where an SM has several");
+    command->footer(
+        "Examples:\n"
+        "  raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv\n"
+        "  raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din\n"
+        "  raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools
