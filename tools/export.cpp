@@ -8,6 +8,7 @@
 #include "cachesim/replay/replay.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/export_accel_sim.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/read_launch.hpp"
@@ -19,6 +20,7 @@ struct Options {
     std::string trace, format, gpu, level = "l1", output;
     std::optional<std::uint32_t> sm, l1;
     std::uint32_t launch = 0;
+    traces::TracegSettings traceg;
 };
 
 const cachesim::SectorFormat* find_sector_format(const std::string& name) {
@@ -31,7 +33,7 @@ std::string format_names() {
     std::string names;
     for (const cachesim::SectorFormat& format : cachesim::sector_formats())
         names += (names.empty() ? "" : ", ") + format.name;
-    return names;
+    return names + ", accel-sim";
 }
 
 void check_launch(const Options& o, const traces::Header& header) {
@@ -85,7 +87,17 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
     file.commit();
 }
 
+void export_instructions(const Options& o) {
+    if (!o.gpu.empty() || o.sm || o.l1 || o.level != "l1")
+        throw UsageError(
+            "--format accel-sim with --gpu, --level, --sm or --l1; expected none: it holds a whole launch");
+    const traces::Reader reader(o.trace);
+    check_launch(o, reader.header());
+    export_accel_sim(reader, o.launch, o.traceg, o.output);
+}
+
 void run(const Options& o) {
+    if (o.format == "accel-sim") return export_instructions(o);
     const cachesim::SectorFormat* sectors = find_sector_format(o.format);
     if (!sectors) throw UsageError(fmt::format("--format '{}'; expected one of: {}", o.format, format_names()));
     export_sectors(o, *sectors);
@@ -95,10 +107,15 @@ void run(const Options& o) {
 
 void add_export(CLI::App& app) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("export", "Write what a cache is asked during a replay, for other tools");
+    CLI::App* command =
+        app.add_subcommand("export", "Write a trace, or what a cache is asked during its replay, for other tools");
     command->add_option("TRACE", o->trace, "trace file")->required();
-    command->add_option("--format", o->format, "dinero (\"0 HEX\" a line), u64 (8 bytes a sector) or csv")->required();
-    command->add_option("-o,--output", o->output, "file to write")->required();
+    command
+        ->add_option("--format", o->format,
+                     "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv, or accel-sim (warp instructions)")
+        ->required();
+    command->add_option("-o,--output", o->output, "file to write; accel-sim: FILE.traceg, FILE.traceg.xz, or a folder")
+        ->required();
     command->add_option("--launch", o->launch, "which launch of the trace; each begins with empty caches")
         ->capture_default_str();
     command->add_option("--gpu", o->gpu, "GPU preset or FILE.toml (see 'raycache list gpus')");
@@ -106,11 +123,23 @@ void add_export(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--sm", o->sm, "the SM whose L1 is meant, from 0");
     command->add_option("--l1", o->l1, "which of its L1s, where an SM has several");
+    command
+        ->add_option("--warps-per-cta", o->traceg.warps_per_cta,
+                     "accel-sim: consecutive warps that form a CTA, 1 to 32")
+        ->check(CLI::Range(1u, 32u))
+        ->capture_default_str();
+    command
+        ->add_option("--binary-version", o->traceg.binary_version,
+                     "accel-sim: 61 Pascal, 70 Volta, 75 Turing, 80 or 86 Ampere")
+        ->check(CLI::IsMember({61, 70, 75, 80, 86}))
+        ->capture_default_str();
     command->footer(
         "Examples:\n"
         "  raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv\n"
         "  raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din\n"
-        "  raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64");
+        "  raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64\n"
+        "  raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace\n"
+        "  raycache export mj.rct --format accel-sim -o mj.traceg.xz");
     command->callback([o] { run(*o); });
 }
 

@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
     tools::add_replay(app);
     tools::add_compare(app);
     tools::add_export(app);
+    tools::add_import(app);
     tools::add_list(app);
     check_counts(app);
     try {

@@ -1,0 +1,54 @@
+#include "tools/export_accel_sim.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/console.hpp"
+#include "traces/accelsim/xz_file.hpp"
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+#include "traces/read_launch.hpp"
+
+namespace raycache::tools {
+namespace {
+
+void write_kernel(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
+                  const std::string& path) {
+    traces::XzFile file(path);
+    traces::TracegText text(reader.header(), settings, [&](std::string_view piece) { file.write(piece); });
+    ProgressBar bar("export", reader.header().warps_per_launch, "warps");
+    traces::read_launch(reader, launch, [&](const traces::WarpTrace& warp) {
+        text.add(warp);
+        bar.add(1, 1);
+    });
+    text.finish();
+    file.commit();
+}
+
+}  // namespace
+
+void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
+                      const std::string& output) {
+    if (output.ends_with(".traceg") || output.ends_with(".traceg.xz"))
+        return write_kernel(reader, launch, settings, output);
+    std::error_code error;
+    const bool made = std::filesystem::create_directory(output, error);
+    if (error || !std::filesystem::is_directory(output, error))
+        throw Error(fmt::format(
+            "{}: expected a folder or room for a new one, found neither; name another folder, or a file that "
+            "ends in .traceg or .traceg.xz",
+            output));
+    const std::filesystem::path folder = output;
+    try {
+        write_kernel(reader, launch, settings, folder / "kernel-1.traceg");
+        traces::OutputFile list(folder / "kernelslist.g");
+        list.write("kernel-1.traceg\n");
+        list.commit();
+    } catch (...) {
+        if (made) std::filesystem::remove_all(folder, error);
+        throw;
+    }
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,17 @@
+// raycache export --format accel-sim: one launch as a folder for Accel-Sim, or as its one file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "traces/accelsim/traceg_text.hpp"
+#include "traces/reader.hpp"
+
+namespace raycache::tools {
+
+/// `output`: FILE.traceg or FILE.traceg.xz; anything else is a folder, made if need be, for kernel-1.traceg and
+/// kernelslist.g.
+void export_accel_sim(const traces::Reader&, std::uint32_t launch, const traces::TracegSettings&,
+                      const std::string& output);
+
+}  // namespace raycache::tools

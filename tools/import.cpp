@@ -1,0 +1,50 @@
+// raycache import: a trace of another tool -> trace file.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "traces/accelsim/import.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::string input, output;
+    bool fuse = false;
+};
+
+void run(const Options& o) {
+    traces::ImportSettings settings;
+    settings.fuse = o.fuse;
+    settings.program = program_name();
+    settings.command = fmt::format("raycache import {}{}", o.input, o.fuse ? " --fuse" : "");
+    const traces::TracegKernel kernel = traces::import_traceg(o.input, o.output, settings);
+    if (!kernel.left_out.empty()) {
+        std::string list;
+        for (const auto& [opcode, count] : kernel.left_out)
+            list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, opcode);
+        warn(fmt::format("{}: memory instructions that are no global loads (LDG) are left out: {}", o.input, list));
+    }
+    if (kernel.bypassing > 0)
+        warn(fmt::format("{}: {} of {} loads are .STRONG: a GPU does not look them up in L1, a replay does", o.input,
+                         kernel.bypassing, kernel.loads));
+}
+
+}  // namespace
+
+void add_import(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("import", "Make a trace of the global loads of an Accel-Sim (NVBit) trace");
+    command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz")->required();
+    command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
+    command->add_flag("--fuse", o->fuse, "one access for loads of a warp that read on, lane by lane: a split object");
+    command->footer(
+        "Examples:\n"
+        "  raycache import kernel-1.traceg.xz -o kernel.rct\n"
+        "  raycache import mj-trace/kernel-1.traceg --fuse -o mj.rct");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools
