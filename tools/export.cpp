@@ -73,7 +73,7 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
     check_launch(o, header);
 
     traces::OutputFile file(o.output);
-    cachesim::SectorStream stream(choice, format, gpu.l1.sector_bytes,
+    cachesim::SectorStream stream(choice, format, gpu.levels[0].sector_bytes,
                                   [&](std::string_view piece) { file.write(piece); });
     cachesim::Replay replay(gpu, header.regions, header.launches[o.launch]);
     replay.observe(stream);

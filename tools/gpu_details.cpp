@@ -33,12 +33,13 @@ std::string gpu_details_text() {
     std::string values;
     for (const cachesim::GpuPreset& preset : cachesim::gpu_presets()) {
         const cachesim::Gpu gpu = cachesim::load_gpu(preset.name);
-        table.row(
-            {gpu.name, fmt::format("{}", gpu.sms), fmt::format("{}", gpu.warps_per_sm),
-             fmt::format("{}", gpu.warps_per_cta), fmt::format("{}", gpu.l1_per_sm),
-             fmt::format("{}", static_cast<double>(gpu.l1.bytes()) / 1024), shape(gpu.l1), index_name(gpu.l1.index),
-             gpu.l1.policy, fmt::format("{}", static_cast<double>(gpu.l2.bytes()) / (1024 * 1024)), shape(gpu.l2),
-             index_name(gpu.l2.index), gpu.l2.policy, fmt::format("{}/{}", gpu.l1.line_bytes, gpu.l1.sector_bytes)});
+        table.row({gpu.name, fmt::format("{}", gpu.sms), fmt::format("{}", gpu.warps_per_sm),
+                   fmt::format("{}", gpu.warps_per_cta), fmt::format("{}", gpu.l1_per_sm),
+                   fmt::format("{}", static_cast<double>(gpu.levels[0].bytes()) / 1024), shape(gpu.levels[0]),
+                   index_name(gpu.levels[0].index), gpu.levels[0].policy,
+                   fmt::format("{}", static_cast<double>(gpu.levels[1].bytes()) / (1024 * 1024)), shape(gpu.levels[1]),
+                   index_name(gpu.levels[1].index), gpu.levels[1].policy,
+                   fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
         values += fmt::format("\n{}: {}\n", gpu.name, gpu.description);
         const auto all = cachesim::gpu_values(preset.name);
         std::size_t keys = 0, widths = 0;
@@ -71,7 +72,7 @@ std::string gpu_details_json() {
                 continue;
             }
             const std::string level = key.substr(0, dot);
-            if (!out.contains(level)) out[level]["bytes"] = (level == "l1" ? gpu.l1 : gpu.l2).bytes();
+            if (!out.contains(level)) out[level]["bytes"] = (level == "l1" ? gpu.levels[0] : gpu.levels[1]).bytes();
             out[level][key.substr(dot + 1)] = given;
         }
     }

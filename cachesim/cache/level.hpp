@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
+#include "cachesim/cache/line_map.hpp"
 #include "cachesim/cache/request.hpp"
-#include "cachesim/cache/set_index.hpp"
 #include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 
@@ -36,16 +36,17 @@ class LevelWith final : public Level {
 public:
     LevelWith(const CacheGeometry& geometry, unsigned caches, const LineIds& ids)
         : ids_(ids),
-          index_(geometry.sets, geometry.index),
-          sets_per_cache_(caches > 1 ? geometry.sets : 0),
-          policy_(geometry.sets * caches, geometry.ways, geometry.line_bytes / geometry.sector_bytes) {}
+          map_(geometry),
+          sets_per_cache_(caches > 1 ? geometry.slices * geometry.sets : 0),
+          policy_(geometry.slices * geometry.sets * caches, geometry.ways,
+                  geometry.line_bytes / geometry.sector_bytes) {}
 
     void process(std::span<Request> requests, std::uint32_t first_cache) override {
         std::array<std::uint64_t, 64> sets;  // a run of look-ups ahead, so that their memory is on its way
         while (!requests.empty()) {
             const auto run = requests.first(std::min(requests.size(), sets.size()));
             for (std::size_t i = 0; i < run.size(); ++i) {
-                sets[i] = (first_cache + run[i].cache) * sets_per_cache_ + index_(run[i].line);
+                sets[i] = (first_cache + run[i].cache) * sets_per_cache_ + map_(run[i].line);
                 policy_.prefetch(sets[i], run[i].line - ids_.offset(run[i].region));
             }
             for (std::size_t i = 0; i < run.size(); ++i)
@@ -56,7 +57,7 @@ public:
 
 private:
     LineIds ids_;
-    SetIndexer index_;
+    LineMap map_;
     std::uint64_t sets_per_cache_;  ///< 0 for a shared level
     Policy policy_;
 };

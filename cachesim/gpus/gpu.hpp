@@ -2,22 +2,64 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cachesim/gpus/timing.hpp"
+
 namespace raycache::cachesim {
 
-/// Which set a line goes to.
-enum class SetIndex { modulo, xor_fold };
+/// Which set of its slice a line goes to. Formulas: cachesim/cache/line_map.hpp
+enum class SetIndex {
+    modulo,
+    xor_fold,
+    ipoly,   ///< remainder of a polynomial division (Rau 1991); 16, 32 or 64 sets
+    parity,  ///< each bit is the parity of some bits of the byte address: CacheGeometry::index_masks
+};
 
-/// A sectored set-associative cache. Any positive numbers will do: powers of two are not required.
+/// Which slice of a level a line goes to.
+enum class SliceHash {
+    modulo,
+    xor_fold,
+    ipoly,  ///< 16, 32 or 64 slices; CacheGeometry::slice_bits
+};
+
+/// A sectored set-associative cache in one or more slices. Any positive numbers will do: powers of two are not required
+/// unless a hash asks for them.
 struct CacheGeometry {
-    std::uint64_t sets = 0, ways = 0;
+    std::uint64_t sets = 0, ways = 0;  ///< sets of one slice
     std::uint32_t line_bytes = 128, sector_bytes = 32;
-    SetIndex index = SetIndex::modulo;  ///< formulas: cachesim/cache/set_index.hpp
-    std::string policy = "lru";         ///< what to evict: a name of cache_policies()
+    SetIndex index = SetIndex::modulo;
+    std::string policy = "lru";  ///< what to evict: a name of cache_policies()
 
-    std::uint64_t bytes() const { return sets * ways * line_bytes; }
+    /// SetIndex::parity: set bit i = parity(byte address & index_masks[i]).
+    std::vector<std::uint64_t> index_masks{};
+    std::uint32_t slices = 1;
+    SliceHash slice_hash = SliceHash::modulo;
+    std::uint32_t interleave_bytes = 256;  ///< modulo, xor_fold: neighbouring bytes that share a slice
+    /// SliceHash::ipoly: address bits that number the slices before hashing, lowest first, and the lowest of the bits
+    /// above that are mixed in.
+    std::vector<std::uint32_t> slice_bits{};
+    std::uint32_t slice_hash_from = 0;
+    /// Bytes fetched from below on a miss: the sectors that lie in the same aligned piece of this size and are absent.
+    /// 0: the sector alone.
+    std::uint32_t fill_bytes = 0;
+
+    std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
+};
+
+/// Which resident warp of an SM issues next.
+enum class Scheduler {
+    loose_round_robin,   ///< the next ready warp in slot order
+    greedy_then_oldest,  ///< the same warp as long as it is ready, then the one that became resident first
+};
+
+/// How a visit to an object becomes load instructions, and these become requests to the tag stage.
+struct FrontEnd {
+    std::uint32_t load_bytes = 16;  ///< widest load that the compiler emits; objects are read in pieces of this size
+    /// Lanes of one load that go to the tag stage together, for loads of 16, 8, and 4 or fewer bytes; 32 = whole warp.
+    std::uint32_t lanes_per_request_16 = 32, lanes_per_request_8 = 32, lanes_per_request_4 = 32;
 };
 
 struct Gpu {
@@ -27,9 +69,17 @@ struct Gpu {
     std::uint32_t warps_per_sm = 0;  ///< resident at once; a multiple of the CTA size is not required
     std::uint32_t warps_per_cta = 8;
     std::uint32_t l1_per_sm =
-        1;             ///< independent L1s of an SM (Maxwell: 2); its resident warps are dealt out among them
-    CacheGeometry l1;  ///< one of them
-    CacheGeometry l2;  ///< the whole L2; line and sector size as in L1
+        1;  ///< independent L1s of an SM (Maxwell: 2); its resident warps are dealt out among them
+    std::uint32_t simd_width = 32;  ///< lanes that execute together; a warp of 32 runs as 32 / simd_width vectors
+    Scheduler scheduler = Scheduler::loose_round_robin;
+    FrontEnd front_end;
+    /// From L1 to the last level before DRAM, 2 or 3. The last is one for the whole GPU, the others are one for each SM
+    /// (L1: l1_per_sm). Line and sector size are the same in all.
+    std::vector<CacheGeometry> levels{2};
+    std::optional<Timing> timing;  ///< what a timed replay needs
+
+    const CacheGeometry& l1() const { return levels.front(); }
+    CacheGeometry& l1() { return levels.front(); }
 };
 
 /// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). Throws UsageError for an

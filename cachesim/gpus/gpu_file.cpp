@@ -1,170 +1,148 @@
 #include "cachesim/gpus/gpu_file.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <limits>
-#include <map>
-#include <sstream>
-
 #include "cachesim/gpus/limits.hpp"
-#include "traces/error.hpp"
-
-#define TOML_HEADER_ONLY 1
-#include <toml++/toml.h>
+#include "cachesim/gpus/toml_reader.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
 
-constexpr const char* root_keys[] = {"name",          "description", "sms", "warps_per_sm",
-                                     "warps_per_cta", "l1_per_sm",   "l1",  "l2"};
-constexpr const char* cache_keys[] = {"sets", "ways", "line_bytes", "sector_bytes", "index", "policy"};
+constexpr const char* root_keys[] = {"name",      "description", "sms",       "warps_per_sm", "warps_per_cta",
+                                     "l1_per_sm", "simd_width",  "scheduler", "front_end",    "l1",
+                                     "l2",        "l3",          "timing"};
+constexpr const char* front_end_keys[] = {"load_bytes", "lanes_per_request_16", "lanes_per_request_8",
+                                          "lanes_per_request_4"};
+constexpr const char* cache_keys[] = {
+    "sets",   "ways",       "line_bytes",       "sector_bytes", "index",           "index_masks", "policy",
+    "slices", "slice_hash", "interleave_bytes", "slice_bits",   "slice_hash_from", "fill_bytes"};
+constexpr const char* timing_keys[] = {"clock_mhz",
+                                       "launch_cycles",
+                                       "schedulers",
+                                       "node_instructions",
+                                       "triangle_instructions",
+                                       "texel_instructions",
+                                       "instruction_latency",
+                                       "dependent_chains",
+                                       "l1_port",
+                                       "l1_banks",
+                                       "tags_per_cycle",
+                                       "l1_bytes_per_cycle",
+                                       "allocate",
+                                       "l1_latency",
+                                       "l2_latency",
+                                       "l2_far_latency",
+                                       "dram_latency",
+                                       "l2_partitions",
+                                       "l1_mshrs",
+                                       "l1_mshr_merges",
+                                       "l2_mshrs",
+                                       "l2_mshr_merges",
+                                       "crossbar_bytes_per_cycle",
+                                       "l2_bytes_per_cycle",
+                                       "dram_channels",
+                                       "dram_gb_s"};
 
-std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    return text;
+constexpr Choice<SetIndex> set_indices[] = {{"modulo", SetIndex::modulo},
+                                            {"xor_fold", SetIndex::xor_fold},
+                                            {"ipoly", SetIndex::ipoly},
+                                            {"parity", SetIndex::parity}};
+constexpr Choice<SliceHash> slice_hashes[] = {
+    {"modulo", SliceHash::modulo}, {"xor_fold", SliceHash::xor_fold}, {"ipoly", SliceHash::ipoly}};
+constexpr Choice<Scheduler> schedulers[] = {{"loose_round_robin", Scheduler::loose_round_robin},
+                                            {"greedy_then_oldest", Scheduler::greedy_then_oldest}};
+constexpr Choice<L1Port> l1_ports[] = {{"tags", L1Port::tags}, {"banks", L1Port::banks}};
+constexpr Choice<Allocate> allocations[] = {{"on_miss", Allocate::on_miss}, {"on_fill", Allocate::on_fill}};
+
+CacheGeometry read_cache(TomlReader::Section section) {
+    CacheGeometry cache;
+    cache.sets = section.number<std::uint64_t>("sets");
+    cache.ways = section.number<std::uint64_t>("ways");
+    cache.line_bytes = section.number<std::uint32_t>("line_bytes");
+    cache.sector_bytes = section.number<std::uint32_t>("sector_bytes");
+    cache.index = section.choice("index", set_indices);
+    cache.policy = section.text("policy");
+    cache.index_masks = section.numbers_or_none<std::uint64_t>("index_masks");
+    cache.slices = section.number_or("slices", cache.slices);
+    cache.slice_hash = section.choice_or("slice_hash", slice_hashes, cache.slice_hash);
+    cache.interleave_bytes = section.number_or("interleave_bytes", std::max(256u, cache.line_bytes));
+    cache.slice_bits = section.numbers_or_none<std::uint32_t>("slice_bits");
+    cache.slice_hash_from = section.number_or("slice_hash_from", cache.slice_hash_from, true);
+    cache.fill_bytes = section.number_or("fill_bytes", cache.sector_bytes);
+    return cache;
 }
 
-std::string type_name(const toml::node& node) {
-    std::ostringstream name;
-    name << node.type();
-    return name.str();
+FrontEnd read_front_end(TomlReader::Section section) {
+    FrontEnd f;
+    f.load_bytes = section.number_or("load_bytes", f.load_bytes);
+    f.lanes_per_request_16 = section.number_or("lanes_per_request_16", f.lanes_per_request_16);
+    f.lanes_per_request_8 = section.number_or("lanes_per_request_8", f.lanes_per_request_8);
+    f.lanes_per_request_4 = section.number_or("lanes_per_request_4", f.lanes_per_request_4);
+    return f;
 }
 
-/// One file: knows lines and keys, so that every error names them.
-class GpuFile {
-public:
-    GpuFile(const std::string& toml, const std::string& file) : file_(file) {
-        try {
-            root_ = toml::parse(toml, file);
-        } catch (const toml::parse_error& e) {
-            throw Error(fmt::format("{}:{}: expected TOML, found an error: {}; correct the line", file_,
-                                    e.source().begin.line, one_line(std::string(e.description()))));
-        }
-    }
+Timing read_timing(TomlReader::Section section) {
+    Timing t;
+    t.clock_mhz = section.positive("clock_mhz");
+    t.launch_cycles = section.number_or("launch_cycles", t.launch_cycles, true);
+    t.schedulers = section.number<std::uint32_t>("schedulers");
+    t.node_instructions = section.number<std::uint32_t>("node_instructions", true);
+    t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
+    t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
+    t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
+    t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
+    t.l1_port = section.choice_or("l1_port", l1_ports, t.l1_port);
+    t.l1_banks = section.number_or("l1_banks", t.l1_banks);
+    t.tags_per_cycle = section.number_or("tags_per_cycle", t.tags_per_cycle);
+    t.l1_bytes_per_cycle = section.positive_or("l1_bytes_per_cycle", t.l1_bytes_per_cycle);
+    t.allocate = section.choice_or("allocate", allocations, t.allocate);
+    t.l1_latency = section.number<std::uint32_t>("l1_latency", true);
+    t.l2_latency = section.number<std::uint32_t>("l2_latency", true);
+    t.l2_far_latency = section.number_or("l2_far_latency", t.l2_latency, true);
+    t.dram_latency = section.number<std::uint32_t>("dram_latency", true);
+    t.l2_partitions = section.number_or("l2_partitions", t.l2_partitions);
+    t.l1_mshrs = section.number<std::uint32_t>("l1_mshrs");
+    t.l1_mshr_merges = section.number<std::uint32_t>("l1_mshr_merges");
+    t.l2_mshrs = section.number<std::uint32_t>("l2_mshrs");
+    t.l2_mshr_merges = section.number<std::uint32_t>("l2_mshr_merges");
+    t.crossbar_bytes_per_cycle = section.positive("crossbar_bytes_per_cycle");
+    t.l2_bytes_per_cycle = section.positive("l2_bytes_per_cycle");
+    t.dram_channels = section.number<std::uint32_t>("dram_channels");
+    t.dram_gb_s = section.positive("dram_gb_s");
+    return t;
+}
 
-    Gpu read() {
-        only_keys(root_, "", root_keys);
-        Gpu gpu;
-        gpu.name = text(root_, "", "name");
-        gpu.description = text(root_, "", "description");
-        gpu.sms = number<std::uint32_t>(root_, "", "sms");
-        gpu.warps_per_sm = number<std::uint32_t>(root_, "", "warps_per_sm");
-        gpu.warps_per_cta = number<std::uint32_t>(root_, "", "warps_per_cta");
-        gpu.l1_per_sm = number<std::uint32_t>(root_, "", "l1_per_sm");
-        gpu.l1 = cache("l1");
-        gpu.l2 = cache("l2");
-        if (const auto problem = find_problem(gpu)) fail(lines_[problem->key], problem->key, problem->message);
-        return gpu;
-    }
-
-    /// In the order in which read() met them; it must have passed.
-    const std::vector<GpuValue>& values() const { return values_; }
-
-private:
-    [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
-        throw Error(fmt::format("{}:{}: {}: {}", file_, line, key, message));
-    }
-
-    static std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
-
-    template <class Keys>
-    void only_keys(const toml::table& table, const std::string& prefix, const Keys& known) const {
-        for (const auto& [key, node] : table) {
-            const std::string name(key.str());
-            if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-                fail(key.source().begin.line, one_line(prefix + name),
-                     fmt::format("expected one of the keys {}, found an unknown one; correct or remove it",
-                                 fmt::join(known, ", ")));
-        }
-    }
-
-    CacheGeometry cache(const std::string& level) {
-        const toml::node& node = find(root_, "", level);
-        const toml::table* table = node.as_table();
-        if (!table)
-            fail(line_of(node), level,
-                 fmt::format("expected a table, found {}; write [{}] and its keys below", type_name(node), level));
-        only_keys(*table, level + ".", cache_keys);
-        CacheGeometry cache;
-        cache.sets = number<std::uint64_t>(*table, level + ".", "sets");
-        cache.ways = number<std::uint64_t>(*table, level + ".", "ways");
-        cache.line_bytes = number<std::uint32_t>(*table, level + ".", "line_bytes");
-        cache.sector_bytes = number<std::uint32_t>(*table, level + ".", "sector_bytes");
-        const std::string index = text(*table, level + ".", "index");
-        if (index != "modulo" && index != "xor_fold")
-            fail(lines_[level + ".index"], level + ".index",
-                 fmt::format("expected \"modulo\" or \"xor_fold\", found \"{}\"", one_line(index)));
-        cache.index = index == "modulo" ? SetIndex::modulo : SetIndex::xor_fold;
-        cache.policy = one_line(text(*table, level + ".", "policy"));
-        return cache;
-    }
-
-    const toml::node& find(const toml::table& table, const std::string& prefix, const std::string& key) const {
-        if (const toml::node* node = table.get(key)) return *node;
-        fail(std::max<std::size_t>(1, line_of(table)), prefix + key, "expected this key, found none; add it");
-    }
-
-    /// The value itself, out of { value = …, source = "…" } if need be.
-    const toml::node& value(const toml::table& table, const std::string& prefix, const std::string& key) {
-        const toml::node& node = find(table, prefix, key);
-        const std::string name = prefix + key;
-        lines_[name] = line_of(node);
-        const toml::table* pair = node.as_table();
-        if (!pair) {
-            values_.push_back({name, "", ""});
-            return node;
-        }
-        static constexpr const char* pair_keys[] = {"value", "source"};
-        only_keys(*pair, name + ".", pair_keys);
-        const toml::node& source = find(*pair, name + ".", "source");
-        if (!source.is_string())
-            fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));
-        values_.push_back({name, "", one_line(source.value_or(std::string()))});
-        return find(*pair, name + ".", "value");
-    }
-
-    template <class Integer>
-    Integer number(const toml::table& table, const std::string& prefix, const std::string& key) {
-        const toml::node& node = value(table, prefix, key);
-        const auto expected = fmt::format("expected a positive whole number below {}",
-                                          std::min<std::uint64_t>(std::numeric_limits<Integer>::max(), 1ull << 41));
-        const auto integer = node.as_integer();
-        if (!integer) fail(line_of(node), prefix + key, fmt::format("{}, found {}", expected, type_name(node)));
-        const std::int64_t found = integer->get();
-        if (found <= 0 || static_cast<std::uint64_t>(found) > std::numeric_limits<Integer>::max())
-            fail(line_of(node), prefix + key, fmt::format("{}, found {}", expected, found));
-        values_.back().value = fmt::format("{}", found);
-        return static_cast<Integer>(found);
-    }
-
-    std::string text(const toml::table& table, const std::string& prefix, const std::string& key) {
-        const toml::node& node = prefix.empty() ? find(table, prefix, key) : value(table, prefix, key);
-        const auto string = node.as_string();
-        if (!string || string->get().empty())
-            fail(line_of(node), prefix + key,
-                 fmt::format("expected a text, found {}", string ? "an empty one" : type_name(node)));
-        if (!prefix.empty()) values_.back().value = one_line(string->get());
-        return one_line(string->get());
-    }
-
-    std::string file_;
-    toml::table root_;
-    std::map<std::string, std::size_t> lines_;  ///< of the values read so far
-    std::vector<GpuValue> values_;
-};
+Gpu read(TomlReader& file) {
+    TomlReader::Section root = file.root(root_keys);
+    Gpu gpu;
+    gpu.name = root.text("name");
+    gpu.description = root.text("description");
+    gpu.sms = root.number<std::uint32_t>("sms");
+    gpu.warps_per_sm = root.number<std::uint32_t>("warps_per_sm");
+    gpu.warps_per_cta = root.number<std::uint32_t>("warps_per_cta");
+    gpu.l1_per_sm = root.number<std::uint32_t>("l1_per_sm");
+    gpu.simd_width = root.number_or("simd_width", gpu.simd_width);
+    gpu.scheduler = root.choice_or("scheduler", schedulers, gpu.scheduler);
+    if (root.has("front_end")) gpu.front_end = read_front_end(root.section("front_end", front_end_keys));
+    gpu.levels.clear();
+    const std::size_t levels = root.has("l3") ? 3 : 2;
+    for (std::size_t level = 1; level <= levels; ++level)
+        gpu.levels.push_back(read_cache(root.section(fmt::format("l{}", level), cache_keys)));
+    if (root.has("timing")) gpu.timing = read_timing(root.section("timing", timing_keys));
+    if (const auto problem = find_problem(gpu)) file.fail_at(problem->key, problem->message);
+    return gpu;
+}
 
 }  // namespace
 
-Gpu parse_gpu(const std::string& toml, const std::string& file) { return GpuFile(toml, file).read(); }
+Gpu parse_gpu(const std::string& toml, const std::string& file) {
+    TomlReader reader(toml, file);
+    return read(reader);
+}
 
 std::vector<GpuValue> parse_gpu_values(const std::string& toml, const std::string& file) {
-    GpuFile gpu(toml, file);
-    gpu.read();
-    return gpu.values();
+    TomlReader reader(toml, file);
+    read(reader);
+    return reader.values();
 }
 
 }  // namespace raycache::cachesim

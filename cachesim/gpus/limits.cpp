@@ -26,6 +26,45 @@ std::optional<GpuProblem> not_a_power_of_two(const std::string& key, std::uint64
         key, fmt::format("expected a power of two, found {}; nearest below: {}", value, std::bit_floor(value))};
 }
 
+bool has_polynomial(std::uint64_t count) { return count == 16 || count == 32 || count == 64; }
+
+/// What the hashes of a level ask of its other keys.
+std::optional<GpuProblem> find_hash_problem(const CacheGeometry& cache, const std::string& level) {
+    if (cache.index == SetIndex::ipoly && !has_polynomial(cache.sets))
+        return GpuProblem{level + ".index", fmt::format("expected 16, 32 or 64 sets for \"ipoly\", found {}; choose "
+                                                        "another index",
+                                                        cache.sets)};
+    if (cache.index == SetIndex::parity &&
+        (cache.index_masks.size() >= 32 || std::uint64_t{1} << cache.index_masks.size() != cache.sets))
+        return GpuProblem{level + ".index_masks", fmt::format("expected log2(sets) masks for \"parity\" and {} sets, "
+                                                              "found {}; give one address mask for each bit of the set",
+                                                              cache.sets, cache.index_masks.size())};
+    if (cache.slices == 1) return std::nullopt;
+    if (cache.slice_hash != SliceHash::ipoly) {
+        if (auto p = not_a_power_of_two(level + ".interleave_bytes", cache.interleave_bytes)) return p;
+        return not_in(level + ".interleave_bytes", cache.interleave_bytes, cache.line_bytes, 1u << 30);
+    }
+    if (!has_polynomial(cache.slices))
+        return GpuProblem{level + ".slice_hash", fmt::format("expected 16, 32 or 64 slices for \"ipoly\", found {}; "
+                                                             "choose \"modulo\" or \"xor_fold\"",
+                                                             cache.slices)};
+    if (std::uint64_t{1} << std::min<std::size_t>(63, cache.slice_bits.size()) != cache.slices)
+        return GpuProblem{level + ".slice_bits", fmt::format("expected log2({}) address bits, found {}", cache.slices,
+                                                             cache.slice_bits.size())};
+    const auto line_shift = static_cast<std::uint32_t>(std::countr_zero(cache.line_bytes));
+    for (std::size_t i = 0; i < cache.slice_bits.size(); ++i) {
+        if (auto p = not_in(level + ".slice_bits", cache.slice_bits[i], line_shift, 62)) return p;
+        if (std::count(cache.slice_bits.begin(), cache.slice_bits.end(), cache.slice_bits[i]) > 1)
+            return GpuProblem{level + ".slice_bits",
+                              fmt::format("expected different address bits, found {} twice", cache.slice_bits[i])};
+        if (cache.slice_bits[i] >= cache.slice_hash_from)
+            return GpuProblem{level + ".slice_hash_from", fmt::format("expected a bit above all slice_bits, found {}; "
+                                                                      "the highest slice bit is {}",
+                                                                      cache.slice_hash_from, cache.slice_bits[i])};
+    }
+    return not_in(level + ".slice_hash_from", cache.slice_hash_from, 1, 63);
+}
+
 /// One level: `caches` caches of this geometry.
 std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::string& level, std::uint64_t caches) {
     if (auto p = not_in(level + ".line_bytes", cache.line_bytes, 16, 4096)) return p;
@@ -45,20 +84,67 @@ std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::st
                                       cache.line_bytes / cache.sector_bytes, cache.line_bytes, cache.sector_bytes)};
     if (auto p = not_in(level + ".sets", cache.sets, 1, most_bytes)) return p;
     if (auto p = not_in(level + ".ways", cache.ways, 1, most_bytes)) return p;
-    if (cache.sets > most_bytes / cache.line_bytes / cache.ways)
-        return GpuProblem{level + ".sets", fmt::format("expected sets x ways x line of at most 2^40 bytes, found "
-                                                       "{} x {} x {}; check the unit",
-                                                       cache.sets, cache.ways, cache.line_bytes)};
-    if (cache.sets * cache.ways > most_lines / caches)
+    if (auto p = not_in(level + ".slices", cache.slices, 1, 4096)) return p;
+    if (cache.sets > most_bytes / cache.line_bytes / cache.ways / cache.slices)
         return GpuProblem{level + ".sets",
-                          fmt::format("expected at most 2^26 lines in all {0} cache{1} together, found {2} x {3} in "
-                                      "each; make the cache smaller",
-                                      caches, caches == 1 ? "" : "s", cache.sets, cache.ways)};
+                          fmt::format("expected slices x sets x ways x line of at most 2^40 bytes, found "
+                                      "{} x {} x {} x {}; check the unit",
+                                      cache.slices, cache.sets, cache.ways, cache.line_bytes)};
+    if (cache.slices * cache.sets * cache.ways > most_lines / caches)
+        return GpuProblem{level + ".sets",
+                          fmt::format("expected at most 2^26 lines in all {0} cache{1} together, found {2} x {3} x {4} "
+                                      "in each; make the cache smaller",
+                                      caches, caches == 1 ? "" : "s", cache.slices, cache.sets, cache.ways)};
+    if (cache.fill_bytes) {
+        if (auto p = not_a_power_of_two(level + ".fill_bytes", cache.fill_bytes)) return p;
+        if (auto p = not_in(level + ".fill_bytes", cache.fill_bytes, cache.sector_bytes, cache.line_bytes)) return p;
+    }
+    if (auto p = find_hash_problem(cache, level)) return p;
     const auto policies = cache_policies();
     if (std::find(policies.begin(), policies.end(), cache.policy) == policies.end())
         return GpuProblem{level + ".policy",
                           fmt::format("expected one of: {}; found \"{}\"", fmt::join(policies, ", "), cache.policy)};
     return std::nullopt;
+}
+
+std::optional<GpuProblem> find_problem(const FrontEnd& front_end) {
+    if (auto p = not_a_power_of_two("front_end.load_bytes", front_end.load_bytes)) return p;
+    if (auto p = not_in("front_end.load_bytes", front_end.load_bytes, 4, 16)) return p;
+    for (const auto& [key, lanes] : {std::pair{"front_end.lanes_per_request_16", front_end.lanes_per_request_16},
+                                     std::pair{"front_end.lanes_per_request_8", front_end.lanes_per_request_8},
+                                     std::pair{"front_end.lanes_per_request_4", front_end.lanes_per_request_4}}) {
+        if (auto p = not_a_power_of_two(key, lanes)) return p;
+        if (auto p = not_in(key, lanes, 1, 32)) return p;
+    }
+    return std::nullopt;
+}
+
+std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
+    if (gpu.levels.size() != 2)
+        return GpuProblem{"timing.clock_mhz",
+                          "expected two levels of caches for a timed replay, found three; remove "
+                          "[timing]"};
+    if (auto p = not_in("timing.schedulers", t.schedulers, 1, 64)) return p;
+    if (auto p = not_in("timing.dependent_chains", t.dependent_chains, 1, 64)) return p;
+    if (auto p = not_a_power_of_two("timing.l1_banks", t.l1_banks)) return p;
+    if (auto p = not_in("timing.l1_banks", t.l1_banks, 1, 32)) return p;
+    if (auto p = not_in("timing.tags_per_cycle", t.tags_per_cycle, 1, 64)) return p;
+    for (const auto& [key, cycles] :
+         {std::pair{"timing.launch_cycles", t.launch_cycles}, std::pair{"timing.l1_latency", t.l1_latency},
+          std::pair{"timing.l2_latency", t.l2_latency}, std::pair{"timing.l2_far_latency", t.l2_far_latency},
+          std::pair{"timing.dram_latency", t.dram_latency},
+          std::pair{"timing.instruction_latency", t.instruction_latency},
+          std::pair{"timing.node_instructions", t.node_instructions},
+          std::pair{"timing.triangle_instructions", t.triangle_instructions},
+          std::pair{"timing.texel_instructions", t.texel_instructions}})
+        if (auto p = not_in(key, cycles, 0, 1'000'000)) return p;
+    if (t.l2_latency < t.l1_latency || t.l2_far_latency < t.l2_latency || t.dram_latency < t.l2_latency)
+        return GpuProblem{"timing.l2_latency",
+                          fmt::format("expected l1_latency <= l2_latency <= l2_far_latency and l2_latency <= "
+                                      "dram_latency, found {}, {}, {} and {}; each contains those above it",
+                                      t.l1_latency, t.l2_latency, t.l2_far_latency, t.dram_latency)};
+    if (auto p = not_in("timing.l2_partitions", t.l2_partitions, 1, gpu.levels.back().slices)) return p;
+    return not_in("timing.dram_channels", t.dram_channels, 1, 4096);
 }
 
 }  // namespace
@@ -68,16 +154,30 @@ std::optional<GpuProblem> find_problem(const Gpu& gpu) {
     if (auto p = not_in("warps_per_sm", gpu.warps_per_sm, 1, 1024)) return p;
     if (auto p = not_in("warps_per_cta", gpu.warps_per_cta, 1, 64)) return p;
     if (auto p = not_in("l1_per_sm", gpu.l1_per_sm, 1, 8)) return p;
-    if (auto p = find_problem(gpu.l1, "l1", std::uint64_t{gpu.sms} * gpu.l1_per_sm)) return p;
-    if (auto p = find_problem(gpu.l2, "l2", 1)) return p;
-    if (gpu.l2.line_bytes != gpu.l1.line_bytes)
-        return GpuProblem{"l2.line_bytes", fmt::format("expected the line size of L1, {}, found {}; levels of unequal "
-                                                       "lines are not modelled",
-                                                       gpu.l1.line_bytes, gpu.l2.line_bytes)};
-    if (gpu.l2.sector_bytes != gpu.l1.sector_bytes)
-        return GpuProblem{"l2.sector_bytes", fmt::format("expected the sector size of L1, {}, found {}; levels of "
-                                                         "unequal sectors are not modelled",
-                                                         gpu.l1.sector_bytes, gpu.l2.sector_bytes)};
+    if (gpu.simd_width != 1 && gpu.simd_width != 2 && gpu.simd_width != 4 && gpu.simd_width != 8 &&
+        gpu.simd_width != 16 && gpu.simd_width != 32)
+        return GpuProblem{"simd_width", fmt::format("expected 1, 2, 4, 8, 16 or 32, found {}", gpu.simd_width)};
+    if (auto p = find_problem(gpu.front_end)) return p;
+    if (auto p = not_in("levels", gpu.levels.size(), 2, 3)) return p;
+    const CacheGeometry& first = gpu.levels.front();
+    for (std::size_t i = 0; i < gpu.levels.size(); ++i) {
+        const CacheGeometry& cache = gpu.levels[i];
+        const std::string level = fmt::format("l{}", i + 1);
+        const bool last = i + 1 == gpu.levels.size();
+        const std::uint64_t caches = last ? 1 : i == 0 ? std::uint64_t{gpu.sms} * gpu.l1_per_sm : gpu.sms;
+        if (auto p = find_problem(cache, level, caches)) return p;
+        if (cache.line_bytes != first.line_bytes)
+            return GpuProblem{level + ".line_bytes",
+                              fmt::format("expected the line size of L1, {}, found {}; levels of unequal "
+                                          "lines are not modelled",
+                                          first.line_bytes, cache.line_bytes)};
+        if (cache.sector_bytes != first.sector_bytes)
+            return GpuProblem{level + ".sector_bytes",
+                              fmt::format("expected the sector size of L1, {}, found {}; levels of "
+                                          "unequal sectors are not modelled",
+                                          first.sector_bytes, cache.sector_bytes)};
+    }
+    if (gpu.timing) return find_problem(*gpu.timing, gpu);
     return std::nullopt;
 }
 

@@ -24,13 +24,13 @@ class Hierarchy {
 public:
     Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
         : l1_per_sm_(gpu.l1_per_sm),
-          ids_(regions, gpu.l1.line_bytes),
-          coalesce_(regions, LineShape(gpu.l1.line_bytes, gpu.l1.sector_bytes), instructions),
-          l1_(make_level(gpu.l1, gpu.sms * gpu.l1_per_sm, ids_, instructions)),
-          l2_(make_level(gpu.l2, 1, ids_, instructions)),
+          ids_(regions, gpu.levels[0].line_bytes),
+          coalesce_(regions, LineShape(gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes), instructions),
+          l1_(make_level(gpu.levels[0], gpu.sms * gpu.l1_per_sm, ids_, instructions)),
+          l2_(make_level(gpu.levels[1], 1, ids_, instructions)),
           requests_(batch_size + coalesce_.max_requests()),
           rounds_(requests_.size()),
-          line_bytes_(gpu.l1.line_bytes),
+          line_bytes_(gpu.levels[0].line_bytes),
           misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 512), coalesce_.max_requests()) {
         for (const traces::Region& region : regions) kinds_.push_back(region.kind);
     }

@@ -109,8 +109,8 @@ TEST_CASE("the set is the documented one for every number of sets and every line
     for (const std::uint64_t sets :
          {1ull, 2ull, 3ull, 4ull, 36ull, 48ull, 80ull, 1536ull, 20480ull, 65536ull, (1ull << 32) - 5, (1ull << 33)})
         for (const auto index : {SetIndex::modulo, SetIndex::xor_fold}) {
-            const SetIndexer indexer(sets, index);
-            CacheGeometry g = geometry(sets, 1, index);
+            const CacheGeometry g = geometry(sets, 1, index);
+            const LineMap indexer(g);
             for (int i = 0; i < 300; ++i) {
                 const std::uint64_t line = random() >> random() % 64;
                 REQUIRE(indexer(line) == naive_set(g, line));
@@ -121,7 +121,7 @@ TEST_CASE("the set is the documented one for every number of sets and every line
 }
 
 TEST_CASE("the folded index spreads lines of equal low bits over all sets") {
-    const SetIndexer fold(64, SetIndex::xor_fold), modulo(64, SetIndex::modulo);
+    const LineMap fold(geometry(64, 1, SetIndex::xor_fold)), modulo(geometry(64, 1));
     std::vector<int> uses(64);
     for (std::uint64_t i = 0; i < 64; ++i) {
         ++uses[fold(i * 64)];

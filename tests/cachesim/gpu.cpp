@@ -65,12 +65,12 @@ TEST_CASE("a GPU file gives every value") {
     CHECK(gpu.warps_per_sm == 4);
     CHECK(gpu.warps_per_cta == 2);
     CHECK(gpu.l1_per_sm == 1);
-    CHECK(gpu.l1.sets == 4);
-    CHECK(gpu.l1.ways == 3);
-    CHECK(gpu.l1.index == SetIndex::modulo);
-    CHECK(gpu.l2.ways == 6);
-    CHECK(gpu.l2.index == SetIndex::xor_fold);
-    CHECK(gpu.l2.bytes() == 5 * 6 * 128);
+    CHECK(gpu.levels[0].sets == 4);
+    CHECK(gpu.levels[0].ways == 3);
+    CHECK(gpu.levels[0].index == SetIndex::modulo);
+    CHECK(gpu.levels[1].ways == 6);
+    CHECK(gpu.levels[1].index == SetIndex::xor_fold);
+    CHECK(gpu.levels[1].bytes() == 5 * 6 * 128);
 }
 
 TEST_CASE("every preset loads under its file name, with a source beside every number") {
@@ -86,7 +86,7 @@ TEST_CASE("every preset loads under its file name, with a source beside every nu
             CHECK_FALSE(value.source.empty());
         }
         const std::string path = RAYCACHE_SOURCE_DIR "/cachesim/gpus/" + preset.name + ".toml";
-        CHECK(load_gpu(path).l2.bytes() == load_gpu(preset.name).l2.bytes());
+        CHECK(load_gpu(path).levels[1].bytes() == load_gpu(preset.name).levels[1].bytes());
     }
 }
 
@@ -109,12 +109,12 @@ TEST_CASE("every preset has the SMs and capacities of the table of known GPUs") 
         const Gpu gpu = load_gpu(known.name);
         CHECK(gpu.sms == known.sms);
         CHECK(gpu.l1_per_sm == known.l1_per_sm);
-        CHECK(gpu.l1.bytes() == known.l1_kib * 1024);
-        CHECK(static_cast<double>(gpu.l2.bytes()) == known.l2_mib * 1024 * 1024);
+        CHECK(gpu.levels[0].bytes() == known.l1_kib * 1024);
+        CHECK(static_cast<double>(gpu.levels[1].bytes()) == known.l2_mib * 1024 * 1024);
         CHECK(gpu.warps_per_sm == known.warps_per_sm);
         CHECK(gpu.warps_per_sm <= known.most_warps_per_sm);
-        CHECK(gpu.l1.line_bytes == 128);
-        CHECK(gpu.l1.sector_bytes == 32);
+        CHECK(gpu.levels[0].line_bytes == 128);
+        CHECK(gpu.levels[0].sector_bytes == 32);
     }
 }
 

@@ -73,8 +73,8 @@ public:
           slots_(std::max(1u, gpu.warps_per_sm / gpu.warps_per_cta) * gpu.warps_per_cta),
           resident_(gpu.sms),
           last_(gpu.sms, slots_ - 1),
-          l1_(gpu.sms * gpu.l1_per_sm, NaiveCache(gpu.l1)),
-          l2_(gpu.l2) {
+          l1_(gpu.sms * gpu.l1_per_sm, NaiveCache(gpu.levels[0])),
+          l2_(gpu.levels[1]) {
         for (std::size_t w = 0; w < launch.warps.size(); w += gpu.warps_per_cta) {
             std::vector<const traces::WarpTrace*> cta;
             bool any = false;
@@ -135,7 +135,7 @@ private:
         c.warp_accesses += 1;
         c.lane_accesses += record.lanes();
         if (region.kind != traces::ObjectKind::texel) c.steps += record.lanes();
-        for (const auto& [line, sectors] : naive_coalesce(region, elements, record.lanes(), gpu_.l1)) {
+        for (const auto& [line, sectors] : naive_coalesce(region, elements, record.lanes(), gpu_.levels[0])) {
             std::set<unsigned> l1_misses;
             for (const unsigned sector : sectors) {
                 c.sectors += 1;

@@ -15,10 +15,10 @@ inline Gpu small_gpu() {
     gpu.sms = 2;
     gpu.warps_per_sm = 4;
     gpu.warps_per_cta = 2;
-    gpu.l1.sets = 2;
-    gpu.l1.ways = 4;
-    gpu.l2.sets = 4;
-    gpu.l2.ways = 8;
+    gpu.levels[0].sets = 2;
+    gpu.levels[0].ways = 4;
+    gpu.levels[1].sets = 4;
+    gpu.levels[1].ways = 8;
     return gpu;
 }
 

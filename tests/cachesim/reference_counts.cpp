@@ -26,11 +26,11 @@ Gpu rtx_3070_like(unsigned sms, std::uint64_t l1_ways) {
     gpu.sms = sms;
     gpu.warps_per_sm = 32;
     gpu.warps_per_cta = 4;
-    gpu.l1.sets = 4;
-    gpu.l1.ways = l1_ways;
-    gpu.l2.sets = 32 * 64;
-    gpu.l2.ways = 16;
-    gpu.l2.index = SetIndex::xor_fold;
+    gpu.levels[0].sets = 4;
+    gpu.levels[0].ways = l1_ways;
+    gpu.levels[1].sets = 32 * 64;
+    gpu.levels[1].ways = 16;
+    gpu.levels[1].index = SetIndex::xor_fold;
     return gpu;
 }
 

@@ -39,9 +39,9 @@ Gpu one_warp_at_a_time() {
 
 TEST_CASE("a tiny launch counts as computed by hand") {
     Gpu gpu = one_warp_at_a_time();
-    gpu.l1.sets = gpu.l1.ways = 1;
-    gpu.l2.sets = 1;
-    gpu.l2.ways = 2;
+    gpu.levels[0].sets = gpu.levels[0].ways = 1;
+    gpu.levels[1].sets = 1;
+    gpu.levels[1].ways = 2;
     // Line 0 sectors 0, 1: DRAM. Line 0 sectors 2, 3: DRAM. Node 0 again: L1. Line 1: DRAM, evicts line 0 from L1.
     // Line 0, all four sectors: L1 miss, L2 hit.
     auto w = warp({{0}, {1}, {0}, {2}, {0, 1}});
@@ -70,7 +70,7 @@ TEST_CASE("warps of an SM take turns") {
     // With one line of L1, A A B B would hit twice; taking turns, A B A B never does.
     Gpu gpu = one_warp_at_a_time();
     gpu.warps_per_sm = gpu.warps_per_cta = 2;
-    gpu.l1.sets = gpu.l1.ways = 1;
+    gpu.levels[0].sets = gpu.levels[0].ways = 1;
     CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 0);
     gpu.warps_per_sm = gpu.warps_per_cta = 1;
     CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 4);
@@ -165,7 +165,7 @@ TEST_CASE("records that contradict the regions are refused") {
 
 TEST_CASE("a GPU that breaks a rule is refused before anything is allocated") {
     Gpu gpu = small_gpu();
-    gpu.l2.ways = std::uint64_t{1} << 63;
+    gpu.levels[1].ways = std::uint64_t{1} << 63;
     CHECK_THROWS_WITH(Replay(gpu, nodes, 0), Catch::Contains("\"small\": l2.ways: expected"));
 }
 

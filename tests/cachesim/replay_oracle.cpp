@@ -32,13 +32,13 @@ TEST_CASE("a replay equals the naive replay for every cache geometry") {
     const auto ways = GENERATE(1, 2, 3, 4, 5, 8, 17, 48, 63, 64, 65, 512);
     const auto index = GENERATE(SetIndex::modulo, SetIndex::xor_fold);
     Gpu gpu = small_gpu();
-    gpu.l1.sets = static_cast<std::uint64_t>(sets);
-    gpu.l1.ways = static_cast<std::uint64_t>(ways);
-    gpu.l1.index = index;
-    gpu.l2.ways = 5;
+    gpu.levels[0].sets = static_cast<std::uint64_t>(sets);
+    gpu.levels[0].ways = static_cast<std::uint64_t>(ways);
+    gpu.levels[0].index = index;
+    gpu.levels[1].ways = 5;
     CAPTURE(sets, ways);
     check_equal(gpu, usual_regions);
-    std::swap(gpu.l1, gpu.l2);
+    std::swap(gpu.levels[0], gpu.levels[1]);
     check_equal(gpu, usual_regions);
 }
 
@@ -46,8 +46,8 @@ TEST_CASE("a replay equals the naive replay for every line and sector size") {
     const auto [line, sector] = GENERATE(table<std::uint32_t, std::uint32_t>(
         {{128, 32}, {128, 128}, {64, 32}, {32, 32}, {16, 4}, {128, 4}, {256, 8}, {4096, 128}}));
     Gpu gpu = small_gpu();
-    gpu.l1.line_bytes = gpu.l2.line_bytes = line;
-    gpu.l1.sector_bytes = gpu.l2.sector_bytes = sector;
+    gpu.levels[0].line_bytes = gpu.levels[1].line_bytes = line;
+    gpu.levels[0].sector_bytes = gpu.levels[1].sector_bytes = sector;
     CAPTURE(line, sector);
     check_equal(gpu, usual_regions);
 }
@@ -75,8 +75,8 @@ TEST_CASE("a replay equals the naive replay where objects straddle many lines or
     check_equal(gpu,
                 {region(ObjectKind::node, 0x1000010, 100, 36, 90), region(ObjectKind::texel, 0x1000400, 64, 64, 90)});
     check_equal(gpu, {region(ObjectKind::node, 0x1000000, 80, 0, 5), region(ObjectKind::node, 0, 1, 1, 500)});
-    gpu.l1.line_bytes = gpu.l2.line_bytes = 16;
-    gpu.l1.sector_bytes = gpu.l2.sector_bytes = 8;
+    gpu.levels[0].line_bytes = gpu.levels[1].line_bytes = 16;
+    gpu.levels[0].sector_bytes = gpu.levels[1].sector_bytes = 8;
     check_equal(gpu, {region(ObjectKind::node, 0x1000000, 4096, 4096, 9)}, 6, 4);
 }
 
@@ -84,8 +84,8 @@ TEST_CASE("a replay equals the naive replay near 2^48 and up to the last byte of
     const std::uint64_t top = ~std::uint64_t{0} - 64 * 300 + 1;
     for (const auto index : {SetIndex::modulo, SetIndex::xor_fold}) {
         Gpu gpu = small_gpu();
-        gpu.l2.sets = 3;
-        gpu.l1.index = gpu.l2.index = index;
+        gpu.levels[1].sets = 3;
+        gpu.levels[0].index = gpu.levels[1].index = index;
         check_equal(gpu, {region(ObjectKind::node, (1ull << 48) - 3200, 64, 64, 300),
                           region(ObjectKind::node, top, 64, 64, 300)});
     }
@@ -110,7 +110,7 @@ TEST_CASE("a replay equals the naive replay on the reference traces", "[slow]") 
         for (const InstructionSet instructions : instruction_sets())
             CHECK(replay(gpu, launch, 0, instructions) == expected);
         gpu.sms = 3;
-        gpu.l2.sets = 57;
+        gpu.levels[1].sets = 57;
         expected = naive_replay(gpu, launch);
         for (const InstructionSet instructions : instruction_sets())
             CHECK(replay(gpu, launch, 0, instructions) == expected);

@@ -35,7 +35,7 @@ struct Exported {
 
 Exported export_launch(const Gpu& gpu, const Launch& launch, SectorStream::Choice choice, const std::string& name) {
     Exported exported;
-    SectorStream stream(choice, format(name), gpu.l1.sector_bytes,
+    SectorStream stream(choice, format(name), gpu.levels[0].sector_bytes,
                         [&](std::string_view piece) { exported.bytes += piece; });
     Replay replay(gpu, launch.regions, 0);
     replay.observe(stream);
@@ -80,9 +80,9 @@ Gpu test_gpu(unsigned sms, unsigned l1_per_sm) {
     Gpu gpu = small_gpu();
     gpu.sms = sms;
     gpu.l1_per_sm = l1_per_sm;
-    gpu.l1.ways = 16;  // room for some hits
-    gpu.l2.sets = 24;
-    gpu.l2.index = SetIndex::xor_fold;
+    gpu.levels[0].ways = 16;  // room for some hits
+    gpu.levels[1].sets = 24;
+    gpu.levels[1].index = SetIndex::xor_fold;
     return gpu;
 }
 
@@ -107,7 +107,7 @@ TEST_CASE("the sectors exported of every L1 give the replay's L1 hits in a cache
             CHECK(one.counts == expected);  // to listen changes nothing
             const auto sectors = addresses(one.bytes);
             asked += sectors.size();
-            const std::uint64_t here = hits(gpu.l1, sectors);
+            const std::uint64_t here = hits(gpu.levels[0], sectors);
             found += here;
             // The hits that the replay itself saw there, line by line.
             std::uint64_t told = 0;
@@ -131,7 +131,7 @@ TEST_CASE("the sectors exported of L2 give the replay's L2 hits in a cache writt
     CHECK(exported.counts == expected);
     const auto sectors = addresses(exported.bytes);
     CHECK(sectors.size() == expected.l2_sectors);
-    CHECK(hits(gpu.l2, sectors) == expected.l2_hits);
+    CHECK(hits(gpu.levels[1], sectors) == expected.l2_hits);
     CHECK(expected.l2_hits > 0);
     CHECK(expected.dram_sectors > 0);
 }

@@ -15,18 +15,18 @@ class LruAvx512 final : public Level {
 public:
     LruAvx512(const CacheGeometry& geometry, unsigned caches, const LineIds& ids)
         : ids_(ids),
-          index_(geometry.sets, geometry.index),
-          sets_per_cache_(caches > 1 ? geometry.sets : 0),
-          near_(geometry.sets * sizeof(Set) <= near),
+          map_(geometry),
+          sets_per_cache_(caches > 1 ? geometry.slices * geometry.sets : 0),
+          near_(geometry.slices * geometry.sets * sizeof(Set) <= near),
           oldest_(std::uint64_t{1} << (geometry.ways - 1)),
           sector_bits_(geometry.line_bytes / geometry.sector_bytes),
-          sets_(geometry.sets * caches) {}
+          sets_(geometry.slices * geometry.sets * caches) {}
 
     RAYCACHE_AVX512 void process(std::span<Request> requests, std::uint32_t first_cache) override {
         Set* const first = sets_.data() + first_cache * sets_per_cache_;
         if (near_) {
             for (Request& request : requests) {
-                const std::uint64_t set = request.cache * sets_per_cache_ + index_(request.line);
+                const std::uint64_t set = request.cache * sets_per_cache_ + map_(request.line);
                 request.sectors = access(first[set], request);
             }
             return;
@@ -35,7 +35,7 @@ public:
         while (!requests.empty()) {
             const auto run = requests.first(std::min(requests.size(), sets.size()));
             for (std::size_t i = 0; i < run.size(); ++i) {
-                sets[i] = first + run[i].cache * sets_per_cache_ + index_(run[i].line);
+                sets[i] = first + run[i].cache * sets_per_cache_ + map_(run[i].line);
                 for (unsigned v = 0; v < vectors; ++v) __builtin_prefetch(&sets[i]->words[v * 16], 1);
             }
             for (std::size_t i = 0; i < run.size(); ++i) run[i].sectors = access(*sets[i], run[i]);
@@ -80,7 +80,7 @@ private:
     }
 
     LineIds ids_;
-    SetIndexer index_;
+    LineMap map_;
     std::uint64_t sets_per_cache_;  ///< 0 for a shared level
     bool near_;
     std::uint64_t oldest_;  ///< bit of the oldest way

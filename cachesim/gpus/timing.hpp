@@ -1,0 +1,51 @@
+// Latencies and rates of a GPU: what a timed replay needs beside the geometry of its caches.
+//
+// Every resource is a server with a rate; a cycle is one of the SM's clock. Latencies are those that a lone dependent
+// load sees from issue to issue (pointer chase), so each contains those of the levels above it.
+#pragma once
+
+#include <cstdint>
+
+namespace raycache::cachesim {
+
+/// How the data of one load leave L1.
+enum class L1Port {
+    /// Tags of tags_per_cycle lines and l1_bytes_per_cycle bytes of distinct sectors a cycle (NVIDIA since Volta).
+    tags,
+    /// l1_banks banks, a sector each and cycle, bank = sector number mod l1_banks; the sectors of a load go in
+    /// descending
+    /// order of address and wait for the next cycle at the first bank that is taken (GPGPU-Sim).
+    banks,
+};
+
+/// When a line of L1 is given up for one that is fetched.
+enum class Allocate { on_miss, on_fill };
+
+struct Timing {
+    double clock_mhz = 0;
+    std::uint32_t launch_cycles = 0;  ///< from the launch to the first instruction
+    std::uint32_t schedulers =
+        4;  ///< of an SM; each issues one instruction a cycle, warp slot mod schedulers is its own
+
+    /// Instructions between the loads of a visit and the next access, by kind of object, and the cycles from one to the
+    /// next that depends on it.
+    std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
+    std::uint32_t instruction_latency = 4;
+    std::uint32_t dependent_chains = 4;  ///< instructions of a visit that may be under way at once
+
+    L1Port l1_port = L1Port::tags;
+    std::uint32_t l1_banks = 4;
+    std::uint32_t tags_per_cycle = 4;
+    double l1_bytes_per_cycle = 128;
+    Allocate allocate = Allocate::on_miss;
+    std::uint32_t l1_latency = 0, l2_latency = 0, l2_far_latency = 0, dram_latency = 0;  ///< cycles
+    std::uint32_t l2_partitions = 1;  ///< an SM reaches its own after l2_latency, the others after l2_far_latency
+    std::uint32_t l1_mshrs = 0, l1_mshr_merges = 0;  ///< sectors under way, and look-ups that may wait for each
+    std::uint32_t l2_mshrs = 0, l2_mshr_merges = 0;  ///< of each slice
+    double crossbar_bytes_per_cycle = 32;            ///< of each SM, each way
+    double l2_bytes_per_cycle = 32;                  ///< of each slice
+    std::uint32_t dram_channels = 1;
+    double dram_gb_s = 0;  ///< of all channels together, 10^9 bytes per second
+};
+
+}  // namespace raycache::cachesim

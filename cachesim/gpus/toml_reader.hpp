@@ -1,0 +1,227 @@
+// A TOML file whose values may stand beside their source. Every error is one line "FILE:LINE: KEY: expected …, found
+// …".
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "traces/error.hpp"
+
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+
+namespace raycache::cachesim {
+
+inline std::string one_line(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    return text;
+}
+
+/// A value's name in the file, and the C++ value that it stands for.
+template <class Enum>
+struct Choice {
+    const char* name;
+    Enum value;
+};
+
+class TomlReader {
+public:
+    TomlReader(const std::string& toml, const std::string& file) : file_(file) {
+        try {
+            root_ = toml::parse(toml, file);
+        } catch (const toml::parse_error& e) {
+            throw Error(fmt::format("{}:{}: expected TOML, found an error: {}; correct the line", file_,
+                                    e.source().begin.line, one_line(std::string(e.description()))));
+        }
+    }
+
+    /// A table of the file: the root, or one below it. Keys that are absent from `known` are errors.
+    class Section {
+    public:
+        bool has(const std::string& key) const { return table_->contains(key); }
+
+        /// Not negative; 0 only if `zero` says so.
+        template <class Integer>
+        Integer number(const std::string& key, bool zero = false) {
+            return reader_->integer<Integer>(reader_->value(*table_, prefix_, key), prefix_ + key, zero);
+        }
+        template <class Integer>
+        Integer number_or(const std::string& key, Integer otherwise, bool zero = false) {
+            return has(key) ? number<Integer>(key, zero) : otherwise;
+        }
+        double positive(const std::string& key) {
+            return reader_->positive(reader_->value(*table_, prefix_, key), prefix_ + key);
+        }
+        double positive_or(const std::string& key, double otherwise) { return has(key) ? positive(key) : otherwise; }
+
+        template <class Integer>
+        std::vector<Integer> numbers_or_none(const std::string& key) {
+            std::vector<Integer> all;
+            if (!has(key)) return all;
+            const toml::node& node = reader_->value(*table_, prefix_, key);
+            const toml::array* array = node.as_array();
+            if (!array)
+                reader_->fail(line_of(node), prefix_ + key,
+                              fmt::format("expected a list of numbers, found {}", type_name(node)));
+            for (const toml::node& element : *array)
+                all.push_back(reader_->integer<Integer>(element, prefix_ + key, true));
+            reader_->values_.back().value = fmt::format("{}", fmt::join(all, " "));
+            return all;
+        }
+
+        /// A text; one in a section below the root may have a source.
+        std::string text(const std::string& key) {
+            const bool plain = prefix_.empty() && (key == "name" || key == "description");
+            const toml::node& node =
+                plain ? reader_->find(*table_, prefix_, key) : reader_->value(*table_, prefix_, key);
+            const auto string = node.as_string();
+            if (!string || string->get().empty())
+                reader_->fail(line_of(node), prefix_ + key,
+                              fmt::format("expected a text, found {}", string ? "an empty one" : type_name(node)));
+            if (!plain) reader_->values_.back().value = one_line(string->get());
+            return one_line(string->get());
+        }
+
+        template <class Enum, std::size_t n>
+        Enum choice(const std::string& key, const Choice<Enum> (&choices)[n]) {
+            const std::string found = text(key);
+            std::string names;
+            for (const auto& c : choices) {
+                if (found == c.name) return c.value;
+                names += fmt::format("{}\"{}\"", names.empty() ? "" : &c == &choices[n - 1] ? " or " : ", ", c.name);
+            }
+            reader_->fail(reader_->lines_[prefix_ + key], prefix_ + key,
+                          fmt::format("expected {}, found \"{}\"", names, found));
+        }
+        template <class Enum, std::size_t n>
+        Enum choice_or(const std::string& key, const Choice<Enum> (&choices)[n], Enum otherwise) {
+            return has(key) ? choice(key, choices) : otherwise;
+        }
+
+        template <class Keys>
+        Section section(const std::string& key, const Keys& known) const {
+            const toml::node& node = reader_->find(*table_, prefix_, key);
+            const toml::table* table = node.as_table();
+            if (!table)
+                reader_->fail(
+                    line_of(node), prefix_ + key,
+                    fmt::format("expected a table, found {}; write [{}] and its keys below", type_name(node), key));
+            reader_->only_keys(*table, prefix_ + key + ".", known);
+            return Section(*reader_, *table, prefix_ + key + ".");
+        }
+
+    private:
+        friend class TomlReader;
+        Section(TomlReader& reader, const toml::table& table, std::string prefix)
+            : reader_(&reader), table_(&table), prefix_(std::move(prefix)) {}
+
+        TomlReader* reader_;
+        const toml::table* table_;
+        std::string prefix_;
+    };
+
+    template <class Keys>
+    Section root(const Keys& known) {
+        only_keys(root_, "", known);
+        return Section(*this, root_, "");
+    }
+
+    /// Names the line of a value that was read.
+    [[noreturn]] void fail_at(const std::string& key, const std::string& message) const {
+        const auto line = lines_.find(key);
+        fail(line == lines_.end() ? 1 : line->second, key, message);
+    }
+
+    /// In the order in which they were read.
+    const std::vector<GpuValue>& values() const { return values_; }
+
+private:
+    [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
+        throw Error(fmt::format("{}:{}: {}: {}", file_, line, key, message));
+    }
+
+    static std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
+
+    static std::string type_name(const toml::node& node) {
+        std::ostringstream name;
+        name << node.type();
+        return name.str();
+    }
+
+    template <class Keys>
+    void only_keys(const toml::table& table, const std::string& prefix, const Keys& known) const {
+        for (const auto& [key, node] : table) {
+            const std::string name(key.str());
+            if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+                fail(key.source().begin.line, one_line(prefix + name),
+                     fmt::format("expected one of the keys {}, found an unknown one; correct or remove it",
+                                 fmt::join(known, ", ")));
+        }
+    }
+
+    const toml::node& find(const toml::table& table, const std::string& prefix, const std::string& key) const {
+        if (const toml::node* node = table.get(key)) return *node;
+        fail(std::max<std::size_t>(1, line_of(table)), prefix + key, "expected this key, found none; add it");
+    }
+
+    /// The value itself, out of { value = …, source = "…" } if need be.
+    const toml::node& value(const toml::table& table, const std::string& prefix, const std::string& key) {
+        const toml::node& node = find(table, prefix, key);
+        const std::string name = prefix + key;
+        lines_[name] = line_of(node);
+        const toml::table* pair = node.as_table();
+        if (!pair) {
+            values_.push_back({name, "", ""});
+            return node;
+        }
+        static constexpr const char* pair_keys[] = {"value", "source"};
+        only_keys(*pair, name + ".", pair_keys);
+        const toml::node& source = find(*pair, name + ".", "source");
+        if (!source.is_string())
+            fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));
+        values_.push_back({name, "", one_line(source.value_or(std::string()))});
+        return find(*pair, name + ".", "value");
+    }
+
+    template <class Integer>
+    Integer integer(const toml::node& node, const std::string& name, bool zero) {
+        constexpr std::uint64_t most = std::min<std::uint64_t>(std::numeric_limits<Integer>::max(), 1ull << 41);
+        const auto expected = fmt::format("expected a {}whole number below {}", zero ? "" : "positive ", most);
+        const auto integer = node.as_integer();
+        if (!integer) fail(line_of(node), name, fmt::format("{}, found {}", expected, type_name(node)));
+        const std::int64_t found = integer->get();
+        if (found < (zero ? 0 : 1) || static_cast<std::uint64_t>(found) > std::numeric_limits<Integer>::max())
+            fail(line_of(node), name, fmt::format("{}, found {}", expected, found));
+        values_.back().value = fmt::format("{}", found);
+        return static_cast<Integer>(found);
+    }
+
+    double positive(const toml::node& node, const std::string& name) {
+        const auto number = node.value<double>();
+        const bool is_number = node.is_integer() || node.is_floating_point();
+        if (!is_number || !number)
+            fail(line_of(node), name, fmt::format("expected a positive number, found {}", type_name(node)));
+        if (!(*number > 0) || !(*number < 1e12))
+            fail(line_of(node), name, fmt::format("expected a positive number below 1e12, found {}", *number));
+        values_.back().value = fmt::format("{}", *number);
+        return *number;
+    }
+
+    std::string file_;
+    toml::table root_;
+    std::map<std::string, std::size_t> lines_;  ///< of the values read so far
+    std::vector<GpuValue> values_;
+};
+
+}  // namespace raycache::cachesim
