@@ -33,6 +33,10 @@ struct Timing {
     std::uint32_t instruction_latency = 4;
     std::uint32_t dependent_chains = 4;  ///< instructions of a visit that may be under way at once
 
+    std::uint32_t load_queue = 4;  ///< loads of a scheduler that may wait for the port of L1
+    std::uint32_t answers_per_cycle =
+        0;  ///< look-ups whose sector came from below that an SM can answer; 0: any number
+
     L1Port l1_port = L1Port::tags;
     std::uint32_t l1_banks = 4;
     std::uint32_t tags_per_cycle = 4;

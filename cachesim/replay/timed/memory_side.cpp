@@ -1,0 +1,127 @@
+#include "cachesim/replay/timed/memory_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// Rates of this many times what is asked stand for no limit at all.
+double cycles_per_sector(double bytes_per_cycle, std::uint32_t sector_bytes, bool infinite) {
+    return infinite ? 0 : sector_bytes / bytes_per_cycle;
+}
+
+}  // namespace
+
+MemorySide::MemorySide(const Gpu& gpu, const Idealised& ideal)
+    : geometry_(gpu.levels.back()),
+      timing_(*gpu.timing),
+      perfect_(ideal.perfect_l2),
+      map_(geometry_),
+      tags_(geometry_.slices * geometry_.sets, geometry_.ways, geometry_.line_bytes / geometry_.sector_bytes,
+            geometry_.policy == "fifo"),
+      sectors_per_line_(geometry_.line_bytes / geometry_.sector_bytes),
+      sectors_per_fill_(std::max(geometry_.fill_bytes, geometry_.sector_bytes) / geometry_.sector_bytes),
+      sms_(gpu.sms),
+      slices_per_channel_(std::max(1u, geometry_.slices / timing_.dram_channels)),
+      shortest_(ideal.no_added_latency ? 0 : timing_.l2_latency - timing_.l1_latency),
+      dram_extra_(ideal.no_added_latency ? 0 : timing_.dram_latency - timing_.l2_latency),
+      far_extra_(ideal.no_added_latency ? 0 : timing_.l2_far_latency - timing_.l2_latency),
+      crossbar_cost_(
+          cycles_per_sector(timing_.crossbar_bytes_per_cycle, geometry_.sector_bytes, ideal.infinite_bandwidth)),
+      slice_cost_(cycles_per_sector(timing_.l2_bytes_per_cycle, geometry_.sector_bytes, ideal.infinite_bandwidth)),
+      dram_cost_(cycles_per_sector(timing_.dram_gb_s * 1e9 / (timing_.clock_mhz * 1e6) / timing_.dram_channels,
+                                   geometry_.sector_bytes, ideal.infinite_bandwidth)),
+      sm_out_(gpu.sms),
+      sm_in_(gpu.sms),
+      slice_in_(geometry_.slices),
+      slice_out_(geometry_.slices),
+      channel_(timing_.dram_channels),
+      merges_(geometry_.slices * geometry_.sets * geometry_.ways * sectors_per_line_),
+      under_way_(geometry_.slices) {}
+
+void MemorySide::request(const MissRequest& r) {
+    const LineMap::Place place = map_.place(r.line);
+    const double granted = std::max({static_cast<double>(r.time), sm_out_[r.sm], slice_in_[place.slice]});
+    sm_out_[r.sm] = granted + crossbar_cost_;
+    slice_in_[place.slice] = granted + slice_cost_;
+    const auto time = static_cast<Cycle>(std::ceil(granted));
+    const Cycle arrival = look_up(r.line, r.sector, place.slice, time);
+    // Data that were on their way for longer than a slice waits block what comes behind.
+    const bool far = std::uint64_t{place.slice} * timing_.l2_partitions / geometry_.slices !=
+                     std::uint64_t{r.sm} * timing_.l2_partitions / sms_;
+    const Cycle ready = std::max(arrival, time) + shortest_ + (far ? far_extra_ : 0);
+    replies_.push({ready, order_++, place.slice, r.entry, r.sm, r.sector, r.l1});
+}
+
+Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_t slice, Cycle time) {
+    if (perfect_) {
+        ++answers_.hits;
+        return time;
+    }
+    std::uint32_t entry = tags_.find(line);
+    if (entry != SectorTags::none && tags_.present(entry, sector)) {
+        tags_.use(entry);
+        const Cycle arrival = tags_.arrival(entry, sector);
+        if (arrival <= time) {
+            ++answers_.hits;
+            return time;
+        }
+        ++answers_.merges;
+        // A register that merges no more holds up the slice until the data are there.
+        if (++merges_[entry * sectors_per_line_ + sector] >= timing_.l2_mshr_merges)
+            slice_in_[slice] = std::max(slice_in_[slice], static_cast<double>(arrival));
+        return arrival;
+    }
+    auto& under_way = under_way_[slice];
+    while (!under_way.empty() && under_way.top() <= time) under_way.pop();
+    if (under_way.size() >= timing_.l2_mshrs) {
+        time = under_way.top();
+        under_way.pop();
+        slice_in_[slice] = std::max(slice_in_[slice], static_cast<double>(time));
+    }
+    if (entry == SectorTags::none) {
+        ++answers_.line_misses;
+        const std::uint64_t set = map_(line);
+        while ((entry = tags_.replace(set, line, time)) == SectorTags::none) {  // every line is on its way: wait
+            time = under_way.empty() ? time + 1 : std::max(time + 1, under_way.top());
+            if (!under_way.empty()) under_way.pop();
+        }
+    } else {
+        ++answers_.sector_misses;
+        tags_.use(entry);
+    }
+    const std::uint32_t first = sector / sectors_per_fill_ * sectors_per_fill_;
+    Cycle arrival = 0;
+    for (std::uint32_t s = first; s < first + sectors_per_fill_; ++s) {
+        if (tags_.present(entry, s)) continue;
+        const Cycle here = read_dram(slice, time);
+        tags_.add(entry, s, here);
+        merges_[entry * sectors_per_line_ + s] = 1;
+        under_way.push(here);
+        if (s == sector) arrival = here;
+    }
+    return arrival;
+}
+
+Cycle MemorySide::read_dram(std::uint32_t slice, Cycle time) {
+    ++dram_sectors_;
+    double& free = channel_[slice / slices_per_channel_ % timing_.dram_channels];
+    const double start = std::max(static_cast<double>(time), free);
+    free = start + dram_cost_;
+    return static_cast<Cycle>(std::ceil(start)) + dram_extra_;
+}
+
+bool MemorySide::next_reply(Cycle end, Reply& reply) {
+    if (replies_.empty() || replies_.top().ready >= end) return false;
+    reply = replies_.top();
+    replies_.pop();
+    const double out = std::max({static_cast<double>(reply.ready), slice_out_[reply.slice], sm_in_[reply.sm]});
+    slice_out_[reply.slice] = out + slice_cost_;
+    sm_in_[reply.sm] = out + crossbar_cost_;
+    reply.ready = static_cast<Cycle>(std::ceil(out));
+    return true;
+}
+
+}  // namespace raycache::cachesim
