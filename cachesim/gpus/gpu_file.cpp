@@ -22,7 +22,9 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "triangle_instructions",
                                        "texel_instructions",
                                        "instruction_latency",
+                                       "instruction_interval",
                                        "dependent_chains",
+                                       "accesses_in_flight",
                                        "load_queue",
                                        "answers_per_cycle",
                                        "l1_port",
@@ -91,7 +93,9 @@ Timing read_timing(TomlReader::Section section) {
     t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
     t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
     t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
+    t.instruction_interval = section.number_or("instruction_interval", t.instruction_interval);
     t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
+    t.accesses_in_flight = section.number_or("accesses_in_flight", t.accesses_in_flight);
     t.load_queue = section.number_or("load_queue", t.load_queue);
     t.answers_per_cycle = section.number_or("answers_per_cycle", t.answers_per_cycle, true);
     t.l1_port = section.choice_or("l1_port", l1_ports, t.l1_port);

@@ -44,7 +44,7 @@ const Gpu& checked_timed(const Gpu& gpu) {
                 fmt::format("GPU \"{}\": l{}.policy: expected \"lru\" or \"fifo\" for a timed replay, found "
                             "\"{}\"",
                             gpu.name, level + 1, policy));
-    if (gpu.warps_per_sm > 64 * gpu.timing->schedulers)
+    if (std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight > 64 * gpu.timing->schedulers)
         throw Error(
             fmt::format("GPU \"{}\": warps_per_sm: expected at most 64 for each of {} schedulers in a timed "
                         "replay, found {}",
