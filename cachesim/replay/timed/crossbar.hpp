@@ -1,10 +1,12 @@
 // One direction of a crossbar with a queue at each input: an output takes one packet at a time, first come first served
-// among the packets at the head of their queues. What stands behind a head waits with it (head-of-line blocking), which
-// is what keeps such a switch from using all of its outputs (Karol, Hluchyj, Morgan 1987, "Input versus output queueing
-// on a space-division packet switch").
+// among the packets at the head of their queues, and goes on with an input as long as its next packet is for it, too.
+// What stands behind a head waits with it (head-of-line blocking), which is what keeps such a switch from using all of
+// its outputs (Karol, Hluchyj, Morgan 1987, "Input versus output queueing on a space-division packet switch").
+// As in GPGPU-Sim's local crossbar, an input can send packets to several outputs in one cycle.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <queue>
@@ -19,16 +21,12 @@ namespace raycache::cachesim {
 template <class Packet>
 class Crossbar {
 public:
-    /// Costs: cycles that a packet takes an input, an output. 0: as many packets at once as there are.
-    Crossbar(std::size_t inputs, std::size_t outputs, double input_cost, double output_cost)
-        : queues_(inputs),
-          input_free_(inputs),
-          output_free_(outputs),
-          input_cost_(input_cost),
-          output_cost_(output_cost) {}
+    /// `cost`: cycles that a packet takes an output. 0: as many packets at once as there are.
+    Crossbar(std::size_t inputs, std::size_t outputs, double cost)
+        : queues_(inputs), input_free_(inputs), output_free_(outputs), cost_(cost) {}
 
     /// Packets of one input leave in order of readiness, ties in order of coming.
-    void add(std::size_t input, const Packet& packet) {
+    void add(std::size_t input, Packet packet) {
         queues_[input].push({packet, order_++});
         ++packets_;
     }
@@ -50,14 +48,23 @@ public:
         while (!heads_.empty()) {
             const auto [time, input] = heads_.top();
             heads_.pop();
-            const Packet packet = queues_[input].top().packet;
-            queues_[input].pop();
-            --packets_;
-            const double granted = std::max(time, output_free_[packet.output]);
-            output_free_[packet.output] = granted + output_cost_;
-            input_free_[input] = granted + input_cost_;
-            arrived(packet, static_cast<Cycle>(granted + 0.999999));
-            if (!queues_[input].empty()) add_head(input, limit);
+            auto& queue = queues_[input];
+            const std::uint32_t output = queue.top().packet.output;
+            double granted = std::max(time, output_free_[output]);
+            for (;;) {
+                const Packet packet = queue.top().packet;
+                queue.pop();
+                --packets_;
+                output_free_[output] = granted + cost_;
+                input_free_[input] = granted;
+                arrived(packet, static_cast<Cycle>(std::ceil(granted)));
+                if (queue.empty() || queue.top().packet.output != output) break;
+                if (static_cast<double>(queue.top().packet.ready) > output_free_[output] ||
+                    output_free_[output] >= limit)
+                    break;
+                granted = output_free_[output];
+            }
+            if (!queue.empty()) add_head(input, limit);
         }
     }
 
@@ -78,7 +85,7 @@ private:
 
     std::vector<std::priority_queue<Queued, std::vector<Queued>, std::greater<>>> queues_;
     std::vector<double> input_free_, output_free_;
-    double input_cost_, output_cost_;
+    double cost_;
     std::uint64_t order_ = 0, packets_ = 0;
     std::priority_queue<Head, std::vector<Head>, std::greater<>> heads_;
 };

@@ -36,11 +36,15 @@ MemorySide::MemorySide(const Gpu& gpu, const Idealised& ideal)
       channel_(timing_.dram_channels),
       merges_(geometry_.slices * geometry_.sets * geometry_.ways * sectors_per_line_),
       under_way_(geometry_.slices),
-      to_slices_(gpu.sms, geometry_.slices, crossbar_cost_, slice_cost_),
-      to_sms_(geometry_.slices, gpu.sms, slice_cost_, crossbar_cost_) {}
+      to_slices_(gpu.sms, geometry_.slices, slice_cost_),
+      to_sms_(geometry_.slices, gpu.sms, crossbar_cost_),
+      sent_(gpu.sms) {}
 
 void MemorySide::request(const MissRequest& miss) {
-    to_slices_.add(miss.sm, {miss.time, map_.place(miss.line).slice, miss});
+    double& free = sent_[miss.sm];
+    const double sent = std::max(static_cast<double>(miss.time), free);
+    free = sent + crossbar_cost_;
+    to_slices_.add(miss.sm, {static_cast<Cycle>(std::ceil(sent)), map_.place(miss.line).slice, miss});
 }
 
 void MemorySide::run_requests(Cycle end) {

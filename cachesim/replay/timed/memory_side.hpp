@@ -100,6 +100,7 @@ private:
     std::vector<std::priority_queue<Cycle, std::vector<Cycle>, std::greater<>>> under_way_;
     Crossbar<Packet> to_slices_;
     Crossbar<Reply> to_sms_;
+    std::vector<double> sent_;  ///< when the port of each SM is free for its next request
     LevelAnswers answers_;
     std::uint64_t dram_sectors_ = 0;
 };
