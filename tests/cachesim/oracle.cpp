@@ -175,15 +175,6 @@ private:
 
 }  // namespace
 
-std::uint64_t naive_set(const CacheGeometry& geometry, std::uint64_t line) {
-    if (geometry.index == SetIndex::modulo) return line % geometry.sets;
-    unsigned k = 1;
-    while (k < 63 && (std::uint64_t{1} << k) < geometry.sets) ++k;
-    std::uint64_t h = 0;
-    for (unsigned shift = 0; shift < 64; shift += k) h ^= line >> shift;
-    return h % geometry.sets;
-}
-
 LaunchStatistics naive_replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample) {
     return {sample, NaiveReplay(gpu, launch).run()};
 }
