@@ -12,7 +12,7 @@
 //     line_bytes = 128            # the same in all levels, as are sectors
 //     sector_bytes = 32
 //     index = "modulo"            # or "xor_fold", "ipoly", "parity": cachesim/cache/line_map.hpp
-//     policy = "lru"              # what to evict: cachesim/cache/policies/
+//     policy = "lru"              # or "fifo", "random", "tree_plru": cachesim/cache/policies/
 //
 // These may be left out; here with what is taken then:
 //
@@ -24,6 +24,7 @@
 //     lanes_per_request_8 = 32             # of 8 bytes
 //     lanes_per_request_4 = 32             # of 4 bytes or fewer
 //     [l1]                                 # and every other level
+//     seed = 1                             # of policy "random"
 //     slices = 1                           # any number
 //     slice_hash = "modulo"                # or "xor_fold", "ipoly"
 //     interleave_bytes = 256               # neighbouring bytes in one slice; a line where that is longer

@@ -165,7 +165,7 @@ TEST_CASE("errors of a GPU file name file, line and key") {
     CHECK_THAT(error("\"made up\"", "7"), StartsWith("f.toml:16: l2.ways.source: expected a string"));
     CHECK_THAT(error("\"tiny\"", "\"\""), StartsWith("f.toml:1: name: expected a text"));
     CHECK_THAT(error("\"modulo\"", "\"mod\""), StartsWith("f.toml:12: l1.index: expected \"modulo\", \"xor_fold\", \"ipoly\" or"));
-    CHECK_THAT(error("\"lru\"", "\"mru\""), StartsWith("f.toml:13: l1.policy: expected one of: lru"));
+    CHECK_THAT(error("\"lru\"", "\"mru\""), StartsWith("f.toml:13: l1.policy: expected one of: fifo, lru, random, tree_plru;"));
 }
 
 TEST_CASE("impossible caches are refused with the line of the value at fault") {
