@@ -190,6 +190,9 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
                        "strategy that ratios refer to; default: cranley-patterson where it is compared");
     app.add_flag("--json", json, "print JSON");
     app.add_flag("--csv", csv, "print CSV");
+    app.add_option("--counters", counters,
+                   "ncu: instead of the table, totals under the names of Nsight Compute's metrics")
+        ->check(CLI::IsMember({"ncu"}));
     app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
 }
 
@@ -199,9 +202,20 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
         loaded.push_back(cachesim::load_gpu(name));
         if (warps_per_sm != 0) loaded.back().warps_per_sm = warps_per_sm;
     }
-    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
-    parse_by(by);
+    check(loaded);
     return loaded;
+}
+
+void ReportOptions::check(const std::vector<cachesim::Gpu>& loaded) const {
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
+    if (!counters.empty() && (json || csv))
+        throw UsageError("--counters with --json or --csv; expected it alone (--save PREFIX writes the other formats)");
+    for (const cachesim::Gpu& gpu : loaded)
+        if (!counters.empty() && gpu.levels.size() != 2)
+            throw UsageError(
+                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}", gpu.name,
+                            gpu.levels.size()));
+    parse_by(by);
 }
 
 void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
@@ -217,7 +231,10 @@ void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
         save_text(save + ".json", cachesim::to_json(report));
         save_text(save + ".csv", cachesim::to_csv(report));
     }
-    print(json ? cachesim::to_json(report) : csv ? cachesim::to_csv(report) : cachesim::to_text(report));
+    print(json                ? cachesim::to_json(report)
+          : csv               ? cachesim::to_csv(report)
+          : !counters.empty() ? cachesim::to_profiler_text(report)
+                              : cachesim::to_text(report));
 }
 
 void ThreadOptions::add(CLI::App& app) {

@@ -29,7 +29,8 @@ void add_replay(CLI::App& app) {
     command->footer(
         "Examples:\n"
         "  raycache replay mj.rct --gpu gtx-980-ti\n"
-        "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json");
+        "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json\n"
+        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu");
     command->callback([o] { run(*o); });
 }
 

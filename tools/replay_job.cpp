@@ -43,7 +43,8 @@ std::vector<cachesim::Series> replay(const std::vector<Source>& sources, const s
             made.parameters = p.parameters;
             made.thread_map = p.thread_map;
             made.gpu = gpu.name;
-            made.sector_bytes = gpu.levels[0].sector_bytes;
+            made.sector_bytes = gpu.l1().sector_bytes;
+            made.levels = gpu.levels.size();
             made.spp = p.spp;
             made.launches.resize(header.launches.size());
         }
