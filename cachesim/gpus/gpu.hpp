@@ -32,6 +32,7 @@ struct CacheGeometry {
     std::uint32_t line_bytes = 128, sector_bytes = 32;
     SetIndex index = SetIndex::modulo;
     std::string policy = "lru";  ///< what to evict: a name of cache_policies()
+    std::uint64_t seed = 1;      ///< policy "random": other numbers, other victims
 
     /// SetIndex::parity: set bit i = parity(byte address & index_masks[i]).
     std::vector<std::uint64_t> index_masks{};

@@ -13,8 +13,8 @@ constexpr const char* root_keys[] = {"name",      "description", "sms",       "w
 constexpr const char* front_end_keys[] = {"load_bytes", "lanes_per_request_16", "lanes_per_request_8",
                                           "lanes_per_request_4"};
 constexpr const char* cache_keys[] = {
-    "sets",   "ways",       "line_bytes",       "sector_bytes", "index",           "index_masks", "policy",
-    "slices", "slice_hash", "interleave_bytes", "slice_bits",   "slice_hash_from", "fill_bytes"};
+    "sets", "ways",   "line_bytes", "sector_bytes",     "index",      "index_masks",     "policy",
+    "seed", "slices", "slice_hash", "interleave_bytes", "slice_bits", "slice_hash_from", "fill_bytes"};
 constexpr const char* timing_keys[] = {"clock_mhz",
                                        "launch_cycles",
                                        "schedulers",
@@ -65,6 +65,7 @@ CacheGeometry read_cache(TomlReader::Section section) {
     cache.sector_bytes = section.number<std::uint32_t>("sector_bytes");
     cache.index = section.choice("index", set_indices);
     cache.policy = section.text("policy");
+    cache.seed = section.number_or("seed", cache.seed, true);
     cache.index_masks = section.numbers_or_none<std::uint64_t>("index_masks");
     cache.slices = section.number_or("slices", cache.slices);
     cache.slice_hash = section.choice_or("slice_hash", slice_hashes, cache.slice_hash);

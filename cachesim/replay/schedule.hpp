@@ -32,7 +32,7 @@ class Schedule {
 public:
     Schedule(const Gpu& gpu, unsigned cta_slots, Hierarchy& memory)
         : memory_(memory), reached_(gpu.sms), waits_(gpu.sms) {
-        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(sm, cta_slots, gpu.warps_per_cta, gpu.l1_per_sm);
+        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(sm, cta_slots, gpu);
     }
 
     /// Makes a CTA resident before its SM runs on, at first before any does.

@@ -1,5 +1,6 @@
 #include "cachesim/report/report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -208,6 +209,67 @@ work: steps/ray; SIMT efficiency: warp accesses/step; coalescing: sectors/warp a
     std::size_t start = 0;
     for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
         CHECK(end - start <= 160);
+}
+
+TEST_CASE("with three levels the product of the factors is the traffic ratio, and tables have columns for L3") {
+    auto all = two_strategies();
+    CHECK(to_text(make_report(all, "rotation", GroupBy::none)).find("L3") == std::string::npos);
+    CHECK(to_csv(make_report(all, "rotation", GroupBy::none)).find("l3") == std::string::npos);
+    CHECK(to_json(make_report(all, "rotation", GroupBy::none)).find("l3") == std::string::npos);
+    const std::vector<Series> two_levels = all;
+    for (Series& s : all) {
+        s.gpu = "cpu";
+        s.levels = 3;
+        for (LaunchStatistics& one : s.launches) {
+            Counters& c = one.groups[0].by_kind[0];
+            c.l3_sectors = c.dram_sectors;
+            c.dram_sectors = c.l3_sectors / 4;
+            c.l2_hits = c.l2_sectors - c.l3_sectors;
+            c.l3_hits = c.l3_sectors - c.dram_sectors;
+        }
+    }
+    all.insert(all.end(), two_levels.begin(), two_levels.end());
+    const Report r = make_report(all, "rotation", GroupBy::ray);
+    const Row& camera = r.rows[2];
+    REQUIRE(camera.factors);
+    CHECK(camera.factors->product() == Approx(camera.dram_bytes_ratio->mean).epsilon(1e-12));
+    CHECK(camera.l3_hit_rate->mean == Approx(0.75).epsilon(0.01));
+    CHECK_FALSE(r.rows[4].l3_hit_rate);
+    CHECK(r.rows[6].factors->l3_locality == 1);
+    const std::string text = to_text(r);
+    for (const char* title : {" L3 % ", "L3->L2 B/ray", "x L3 locality"}) CHECK_THAT(text, Catch::Contains(title));
+    const auto json = nlohmann::json::parse(to_json(r));
+    CHECK(json["rows"][2]["l3_hit_rate"]["mean"] == camera.l3_hit_rate->mean);
+    CHECK(json["rows"][4]["l3_hit_rate"].is_null());
+    CHECK(json["rows"][2]["factors"].contains("l3_locality"));
+    const std::string csv = to_csv(r);
+    const auto commas = [&](std::size_t from) {
+        return std::count(csv.begin() + from, csv.begin() + csv.find('\n', from), ',');
+    };
+    CHECK(commas(0) == commas(csv.find('\n') + 1));
+    CHECK_THAT(csv, Catch::Contains("l3_bytes_per_ray"));
+}
+
+TEST_CASE("the counters of a profiler are as computed by hand") {
+    Counters c = counters(100, 4000, 800, 8000, 4000, 1000);
+    c.loads = 3200;
+    c.l1_requests = 16000;
+    const std::string text = to_profiler_text(
+        make_report({series("a", {{0, {RayGroup{traces::RayType::camera, 0, {c}, 100}}}})}, "", GroupBy::none));
+    for (const char* line :
+         {"room, a, N 64, gtx-980-ti ", "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum 16000",
+          "l1tex__t_sector_hit_rate.pct 75.00",  // 4000 of 16000 miss
+          "l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio 5.00",
+          "l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum 4000", "lts__t_sectors_srcunit_tex_lookup_hit.sum 3000",
+          "lts__t_sectors_srcunit_tex_lookup_miss.sum 1000", "lts__t_sector_hit_rate.pct 75.00",
+          "dram__bytes_read.sum 32000", "smsp__thread_inst_executed_per_inst_executed.ratio 5.00"}) {
+        std::string squeezed;
+        for (const char letter : text)
+            if (letter != ' ' || squeezed.back() != ' ') squeezed += letter;
+        CHECK_THAT(squeezed, Catch::Contains(line));
+    }
+    CHECK(to_profiler_text(make_report({series("a", {launch(0, {})})}, "", GroupBy::none)).find("nan") ==
+          std::string::npos);
 }
 
 TEST_CASE("a report of nothing still prints") {
