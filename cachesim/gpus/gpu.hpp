@@ -50,7 +50,7 @@ struct CacheGeometry {
     std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
 };
 
-/// Which resident warp of an SM issues next.
+/// Which resident warp of an SM issues next, where time says which are ready. A functional replay always takes turns.
 enum class Scheduler {
     loose_round_robin,   ///< the next ready warp in slot order
     greedy_then_oldest,  ///< the same warp as long as it is ready, then the one that became resident first
