@@ -20,6 +20,8 @@
 
 namespace raycache::cachesim {
 
+using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
+
 class Hierarchy {
 public:
     Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
@@ -36,7 +38,11 @@ public:
     }
 
     /// From now on the sink, which must outlive this object, hears of the caches that it wants.
-    void observe(RequestSink& sink) { sink_ = &sink; }
+    void observe(RequestSink& sink) {
+        sink_ = &sink;
+        accesses_.resize(requests_.size());
+        missing_for_.resize(misses_.rounds());
+    }
 
     /// Rounds of a window: every SM may run so many rounds ahead of the others.
     std::size_t rounds() const { return misses_.rounds(); }
@@ -44,10 +50,10 @@ public:
     void add_rays(const traces::Record& record) { tally_.add_rays(record); }
 
     /// The warp access that an SM issues through one of its L1s in this round of the window; `elements`: one index per
-    /// active lane. Accesses of one SM come in order of rounds, accesses in one round in order of SMs; end_sm() comes
-    /// between accesses of different SMs.
-    void access(const traces::Record& record, const std::uint32_t* elements, unsigned sm, unsigned l1,
-                std::size_t round) {
+    /// active lane; `warp`: whose. Accesses of one SM come in order of rounds, accesses in one round in order of SMs;
+    /// end_sm() comes between accesses of different SMs.
+    void access(const traces::Record& record, const std::uint32_t* elements, const WarpPointer& warp, unsigned sm,
+                unsigned l1, std::size_t round) {
         Request like;
         like.group = tally_.group(record, kinds_[record.region]);
         like.region = record.region;
@@ -57,6 +63,8 @@ public:
         tally_.add_access(like.group, lanes, made.sectors);
         misses_.reserve(round);
         mark(round, made.requests);
+        if (sink_) [[unlikely]]
+            announce({record, elements, warp->warp}, made.requests);
         pending_ += made.requests;
         if (pending_ >= batch_size) end_sm(sm);
     }
@@ -68,9 +76,12 @@ public:
         if (observed) note(asked);
         l1_->process(asked, sm * l1_per_sm_);
         if (observed)
-            for (std::size_t i = 0; i < pending_; ++i) sink_->l1(served(i, asked[i], sm, asked[i].cache));
+            for (std::size_t i = 0; i < pending_; ++i) sink_->l1(served(i, asked[i], sm, asked[i].cache, accesses_));
         tally_.add_l2(asked);
         for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], asked[i]);
+        if (sink_)
+            for (std::size_t i = 0; i < pending_; ++i)
+                if (asked[i].sectors) missing_for_[rounds_[i]].push_back(accesses_[i]);
         pending_ = 0;
     }
 
@@ -82,9 +93,13 @@ public:
             if (observed) note(asked);
             l2_->process(asked, 0);
             if (observed)
-                for (std::size_t i = 0; i < asked.size(); ++i) sink_->l2(served(i, asked[i], 0, 0));
+                for (std::size_t i = 0; i < asked.size(); ++i)
+                    sink_->l2(served(i, asked[i], 0, 0, missing_for_[round]));
             tally_.add_dram(asked);
+            if (sink_) missing_for_[round].clear();
         }
+        if (sink_) sink_->end_window();
+        issued_ = 0;
     }
 
     /// The counts of all windows that have ended.
@@ -105,15 +120,30 @@ private:
     }
     static constexpr std::size_t few = 16;
 
+    /// Tells the sink of an access, and notes the number it has there for the requests that are about to be pending.
+    void announce(const IssuedAccess& access, std::size_t requests) {
+        sink_->issued(access);
+        std::fill_n(accesses_.begin() + static_cast<std::ptrdiff_t>(pending_), requests, issued_++);
+    }
+
     /// Keeps what is asked: the answer will stand in its place.
     void note(std::span<const Request> asked) {
         noted_.clear();
         for (const Request& request : asked) noted_.push_back(request.sectors);
     }
     /// Request i of those noted, now answered.
-    ServedRequest served(std::size_t i, const Request& answer, unsigned sm, unsigned cache) const {
+    ServedRequest served(std::size_t i, const Request& answer, unsigned sm, unsigned cache,
+                         const std::vector<std::uint32_t>& accesses) const {
         const GroupKey key = tally_.key(answer.group);
-        return {answer.line * line_bytes_, noted_[i], answer.sectors, sm, cache, key.ray, key.bounce, key.kind};
+        return {answer.line * line_bytes_,
+                noted_[i],
+                answer.sectors,
+                sm,
+                cache,
+                key.ray,
+                key.bounce,
+                key.kind,
+                accesses[i]};
     }
 
     unsigned l1_per_sm_;
@@ -127,7 +157,10 @@ private:
     std::size_t pending_ = 0;
     std::uint32_t line_bytes_;
     RequestSink* sink_ = nullptr;
-    std::vector<std::uint32_t> noted_;  ///< sectors asked for, while a level answers and the sink listens
+    std::vector<std::uint32_t> noted_;     ///< sectors asked for, while a level answers and the sink listens
+    std::uint32_t issued_ = 0;             ///< accesses of this window, while a sink listens
+    std::vector<std::uint32_t> accesses_;  ///< of each pending request, while a sink listens
+    std::vector<std::vector<std::uint32_t>> missing_for_;  ///< likewise, of each request in misses_, by round
     MissWindow misses_;
 };
 

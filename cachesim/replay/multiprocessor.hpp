@@ -14,8 +14,6 @@
 
 namespace raycache::cachesim {
 
-using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
-
 class Multiprocessor {
 public:
     /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM.
@@ -82,7 +80,7 @@ private:
         __builtin_prefetch(later.elements);
         __builtin_prefetch(later.elements + 16);
         const traces::Record record = *warp.next++;
-        memory.access(record, warp.elements, number_, warp.l1, round);
+        memory.access(record, warp.elements, traces_[warp.slot], number_, warp.l1, round);
         warp.elements += record.lanes();
         resume_slot_ = warp.slot + 1;
         if (advance_to_access(warp, memory)) {
