@@ -38,8 +38,11 @@ void explain_and_print(const Options& o, const std::vector<LaunchSource>& source
     const Explained done = explain(request);
     const cachesim::Explanation& e = done.explanation;
     if (request.pixels)
-        write_heat_maps(o.heat_map, make_heat_map(e.base.name, *sources[0].header, done.costs[0], e.sector_bytes),
-                        make_heat_map(e.other.name, *sources[1].header, done.costs[1], e.sector_bytes));
+        write_heat_maps(
+            o.heat_map,
+            fmt::format("{}, N {}, {} sample indices, GPU {}", e.scene, e.spp, e.base.launches.size(), e.gpu),
+            make_heat_map(e.base.name, *sources[0].header, done.costs[0], e.sector_bytes),
+            make_heat_map(e.other.name, *sources[1].header, done.costs[1], e.sector_bytes));
     print(o.gpus.json ? cachesim::to_json(e) : cachesim::to_text(e));
 }
 

@@ -70,7 +70,7 @@ void check_heat_map_name(const std::string& exr) {
         throw UsageError(fmt::format("--heatmap '{}'; expected a file name that ends in .exr", exr));
 }
 
-void write_heat_maps(const std::string& exr, const HeatMap& base, const HeatMap& other) {
+void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other) {
     std::vector<tracer::Channel> channels;
     for (const auto& [layer, map] : {std::pair{"base", &base}, std::pair{"other", &other}}) {
         channels.push_back({fmt::format("{}.DRAM bytes", layer), map->dram_bytes});
@@ -78,7 +78,7 @@ void write_heat_maps(const std::string& exr, const HeatMap& base, const HeatMap&
         channels.push_back({fmt::format("{}.active lanes", layer), map->active_lanes});
     }
     tracer::write_channels(exr, base.width, base.height, channels);
-    tracer::write_screen_image(exr.substr(0, exr.size() - 4) + ".png", draw(base, other));
+    tracer::write_screen_image(exr.substr(0, exr.size() - 4) + ".png", draw(title, base, other));
 }
 
 }  // namespace raycache::tools

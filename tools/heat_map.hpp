@@ -30,7 +30,8 @@ HeatMap make_heat_map(const std::string& name, const traces::Header&, const cach
 void check_heat_map_name(const std::string& exr);
 
 /// Writes FILE.exr with the layers "base" and "other", each with the channels "DRAM bytes", "L1 miss rate" and "active
-/// lanes", and FILE.png: a row of three panels for each trace and a row of their differences, with common scales.
-void write_heat_maps(const std::string& exr, const HeatMap& base, const HeatMap& other);
+/// lanes", and FILE.png: a row of three panels for each trace and a row of
+/// their differences, with common scales, under a title.
+void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other);
 
 }  // namespace raycache::tools

@@ -153,16 +153,17 @@ void draw_bar(Canvas& canvas, unsigned x, unsigned y, unsigned width, const Scal
 
 }  // namespace
 
-tracer::ScreenImage draw(const HeatMap& base, const HeatMap& other) {
+tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const HeatMap& other) {
     const Zoom zoom(base.width, base.height);
     const unsigned panel = std::max(zoom.panel_width, 400u);  // wide enough for its unit
     const unsigned row_height = line + zoom.panel_height + margin, bar = bar_height + 2 * line + margin;
-    Canvas canvas(margin + 3 * (panel + margin), margin + line + 3 * row_height + 2 * bar);
+    const unsigned heading = 3 * glyph_height + margin, top = margin + line + heading + 4;
+    Canvas canvas(margin + 3 * (panel + margin), top + 3 * row_height + 2 * bar);
+    canvas.text(margin, margin, title, text_scale);
 
     const std::array<std::string, 3> titles{base.name, other.name,
                                             fmt::format("{} minus {}, mean of {} x {} pixels; blue: {} has less",
                                                         other.name, base.name, block, block, other.name)};
-    const unsigned top = margin + line;
     const std::array<unsigned, 3> row_top{top, top + row_height, top + 2 * row_height + bar};
     for (unsigned row = 0; row < 3; ++row) canvas.text(margin, row_top[row], titles[row], text_scale);
     for (unsigned column = 0; column < quantities.size(); ++column) {
@@ -171,7 +172,7 @@ tracer::ScreenImage draw(const HeatMap& base, const HeatMap& other) {
         const Grid grid = grid_of(base, quantity), other_grid = grid_of(other, quantity);
         const Grid change = difference(grid, other_grid);
         const Scale scale = common_scale(quantity, grid, other_grid), change_scale = difference_scale(change);
-        canvas.text(x, margin, quantity.title, text_scale);
+        canvas.text(x, margin + line + 8, quantity.title, 3);
         draw_panel(canvas, x, row_top[0] + line, grid, scale, zoom);
         draw_panel(canvas, x, row_top[1] + line, other_grid, scale, zoom);
         draw_bar(canvas, x, row_top[1] + row_height - 4, zoom.panel_width, scale, quantity.unit);

@@ -39,7 +39,7 @@ public:
     const Access& operator[](std::uint32_t access) const { return accesses_[access]; }
 
     /// Calls use(lane, element, sectors) for each active lane, lowest first, whose object lies in some of the sectors
-    /// that the look-up asked for.
+    /// that the look-up asked for, until one call returns false.
     template <class Use>
     void for_each_lane(const ServedRequest& request, Use&& use) const {
         const Access& access = accesses_[request.access];
@@ -53,7 +53,7 @@ public:
             const std::uint64_t first = (std::max(begin, request.address) - request.address) / sector_bytes_;
             const std::uint64_t last = (std::min(end, line_end) - request.address) / sector_bytes_;
             const std::uint32_t sectors = sector_range(first, last) & request.asked;
-            if (sectors) use(static_cast<unsigned>(std::countr_zero(left)), *element, sectors);
+            if (sectors && !use(static_cast<unsigned>(std::countr_zero(left)), *element, sectors)) return;
         }
     }
 

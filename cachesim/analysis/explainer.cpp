@@ -70,6 +70,7 @@ void Explainer::served(std::size_t level, const ServedRequest& request) {
             const std::uint8_t depth = depth_(region, element);
             if (depth != ElementDepth::none) verdict.add_to(found.by_depth[depth], sectors & left);
             left &= ~sectors;
+            return left != 0;
         });
     }
     if (level == 0) find_owners(request, cache, shadow.entry);

@@ -24,6 +24,7 @@ void PixelCosts::share(const AccessLog& log, const ServedRequest& request, std::
     log.for_each_lane(request, [&](unsigned lane, std::uint32_t, std::uint32_t asked) {
         for (std::uint32_t left = asked & sectors; left != 0; left &= left - 1)
             askers[static_cast<unsigned>(std::countr_zero(left))] |= 1u << lane;
+        return true;
     });
     const std::uint32_t* const pixels = of_lane_ + std::size_t{log[request.access].warp} * traces::warp_lanes;
     for (std::uint32_t left = sectors; left != 0; left &= left - 1) {

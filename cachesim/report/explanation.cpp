@@ -54,17 +54,15 @@ std::string sentence(const Explanation& e) {
     std::string text =
         fmt::format("{} reads {} DRAM bytes per ray than {} ({:.1f} against {:.1f}) and {} L2-to-L1 bytes",
                     e.other.name, change(dram.mean), e.base.name, bytes(other), bytes(base), change(l2.mean));
-    if (!certain(dram))
-        return text + fmt::format(
-                          "; at {} sample indices the ratio of DRAM bytes is {:.3f} ±{:.3f}, so this is no certain "
-                          "difference.",
-                          e.base.launches.size(), dram.mean, *dram.half_width);
     if (const auto most = main_term(*factors))
         text += fmt::format("; {} does most, x{:.3f} ({})", most->term->name, most->factor, most->meaning());
-    text += fmt::format("; with equal hit rates x{:.3f} would remain, the L1 and L2 miss rates give x{:.3f}",
+    text += fmt::format("; with equal miss rates x{:.3f} would remain, the L1 and L2 miss rates give x{:.3f}",
                         factors->work * factors->simt_efficiency * factors->coalescing,
                         factors->l1_locality * factors->l2_locality);
-    return text + (dram.half_width ? "." : " (one sample index: no confidence interval).");
+    if (!dram.half_width) return text + "; from one sample index, so without a confidence interval.";
+    if (certain(dram)) return text + ".";
+    return text + fmt::format("; but with {} sample indices the ratio is {:.3f} ±{:.3f}, no certain difference.",
+                              e.base.launches.size(), dram.mean, *dram.half_width);
 }
 
 std::string factor_sentences(const Report& report) {

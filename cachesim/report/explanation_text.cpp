@@ -151,7 +151,7 @@ std::string place_table(const Explanation& e) {
     TextTable table;
     table.column("", Align::left);
     for (const char* title :
-         {"L1 misses: base", "other", "ratio", "L1 miss %: base", "other", "DRAM: base", "other", "ratio"})
+         {"L1 misses: base", "other", "ratio", "L1 miss %: base", "other", "DRAM sectors: base", "other", "ratio"})
         table.column(title, Align::right);
     const auto row = [&](const std::string& name, const std::function<MissCounts(const LevelFindings&)>& of) {
         const MissCounts b1 = of(base1), o1 = of(other1), b2 = of(base2), o2 = of(other2);
