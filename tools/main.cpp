@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
     tools::add_verify(app);
     tools::add_replay(app);
     tools::add_compare(app);
+    tools::add_explain(app);
     tools::add_export(app);
     tools::add_import(app);
     tools::add_list(app);

@@ -6,31 +6,14 @@
 
 #include "cachesim/replay/replay.hpp"
 #include "tools/console.hpp"
-#include "traces/read_launch.hpp"
-#include "traces/reader.hpp"
+#include "tools/launch_source.hpp"
 
 namespace raycache::tools {
 namespace {
 
-/// Hands over the warps of one launch, in order.
-using Sink = std::function<void(traces::WarpTrace&&)>;
-
-/// Something that has launches.
-struct Source {
-    const traces::Header* header;
-    std::function<void(std::uint32_t launch, const Sink&)> deliver;  ///< thread-safe
-};
-
-std::uint64_t count_rays(const traces::WarpTrace& warp) {
-    std::uint64_t rays = 0;
-    for (const traces::Record& record : warp.records)
-        if (!record.is_access()) rays += record.lanes();
-    return rays;
-}
-
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
-std::vector<Series> replay(const std::vector<Source>& sources, const std::vector<cachesim::Gpu>& gpus,
+std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
                            const MakeReplay& make_replay) {
     std::vector<Series> series;
     std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
@@ -76,7 +59,7 @@ std::vector<Series> replay(const std::vector<Source>& sources, const std::vector
     return series;
 }
 
-std::vector<cachesim::Series> replay_functional(const std::vector<Source>& sources,
+std::vector<cachesim::Series> replay_functional(const std::vector<LaunchSource>& sources,
                                                 const std::vector<cachesim::Gpu>& gpus) {
     return replay<cachesim::Series>(
         sources, gpus, [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
@@ -84,7 +67,7 @@ std::vector<cachesim::Series> replay_functional(const std::vector<Source>& sourc
         });
 }
 
-std::vector<cachesim::TimedSeries> replay_timed(const std::vector<Source>& sources,
+std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>& sources,
                                                 const std::vector<cachesim::Gpu>& gpus,
                                                 const cachesim::Idealised& ideal) {
     return replay<cachesim::TimedSeries>(
@@ -93,49 +76,18 @@ std::vector<cachesim::TimedSeries> replay_timed(const std::vector<Source>& sourc
         });
 }
 
-/// Opens trace files and keeps them open.
-struct Files {
-    explicit Files(const std::vector<std::string>& paths) {
-        for (const std::string& path : paths) {
-            readers.push_back(std::make_unique<traces::Reader>(path));
-            const traces::Reader* reader = readers.back().get();
-            sources.push_back({&reader->header(), [reader](std::uint32_t launch, const Sink& sink) {
-                                   traces::read_launch(*reader, launch, sink);
-                               }});
-        }
-    }
-    std::vector<std::unique_ptr<traces::Reader>> readers;
-    std::vector<Source> sources;
-};
-
-std::vector<Source> sources_of(const std::vector<std::unique_ptr<tracer::Capture>>& captures) {
-    std::vector<Source> sources;
-    for (const auto& owned : captures) {
-        const tracer::Capture* capture = owned.get();
-        sources.push_back({&capture->header(), [capture](std::uint32_t launch, const Sink& sink) {
-                               const auto worker = capture->make_worker();
-                               for (std::uint32_t warp = 0; warp < capture->header().warps_per_launch; ++warp) {
-                                   traces::WarpTrace trace;
-                                   capture->trace_warp(*worker, launch, warp, trace);
-                                   sink(std::move(trace));
-                               }
-                           }});
-    }
-    return sources;
-}
-
 }  // namespace
 
 std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths,
                                            const std::vector<cachesim::Gpu>& gpus) {
-    const Files files(paths);
+    const TraceFiles files(paths);
     return replay_functional(files.sources, gpus);
 }
 
 std::vector<cachesim::TimedSeries> replay_files_timed(const std::vector<std::string>& paths,
                                                       const std::vector<cachesim::Gpu>& gpus,
                                                       const cachesim::Idealised& ideal) {
-    const Files files(paths);
+    const TraceFiles files(paths);
     return replay_timed(files.sources, gpus, ideal);
 }
 

@@ -88,36 +88,35 @@ FileKind require_kind(const std::string& path) {
     return *kind;
 }
 
-/// The file's bytes. Encoding in memory leaves nothing on the disk when it fails.
-std::vector<unsigned char> encode(const std::string& path, FileKind kind, const Image& image, float exposure_stops) {
-    const char* format = kind == FileKind::png    ? "png"
-                         : kind == FileKind::jpeg ? "jpeg"
-                         : kind == FileKind::exr  ? "openexr"
-                                                  : "hdr";
-    const bool linear = kind == FileKind::exr || kind == FileKind::hdr;
-    const auto fail = [&](const std::string& why) {
-        throw Error(fmt::format("{}: cannot encode the image ({}); choose another format", path, first_line(why)));
-    };
-    const auto output = OIIO::ImageOutput::create(format);
-    if (!output) fail(OIIO::geterror());
-    OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
-                         linear ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-    if (kind == FileKind::exr) spec.attribute("compression", "zip");
-    if (kind == FileKind::jpeg) spec.attribute("Compression", "jpeg:95");
-    if (!linear) spec.attribute("oiio:ColorSpace", "sRGB");
+[[noreturn]] void fail_to_encode(const std::string& path, const std::string& why) {
+    throw Error(fmt::format("{}: cannot encode the image ({}); choose another format", path, first_line(why)));
+}
 
-    std::vector<std::array<std::uint8_t, 3>> screen;
-    if (!linear) {
-        screen.reserve(image.pixels.size());
-        for (const Vec3 pixel : image.pixels) screen.push_back(tone_map(pixel, exposure_stops));
-    }
+void check_size(const std::string& path, std::uint32_t width, std::uint32_t height, std::size_t pixels) {
+    if (width == 0 || height == 0 || width > 65535 || height > 65535 || pixels != std::size_t{width} * height)
+        throw Error(
+            fmt::format("{}: expected an image of 1 to 65535 pixels on each side, found {} x {} with {} pixels; "
+                        "choose another size",
+                        path, width, height, pixels));
+}
+
+/// Encodes in memory, which leaves nothing on the disk when it fails, then writes the file.
+void write_encoded(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                   const void* texels) {
+    const auto output = OIIO::ImageOutput::create(format);
+    if (!output) fail_to_encode(path, OIIO::geterror());
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
-    if (!output->set_ioproxy(&memory) || !output->open(std::string("memory.") + format, spec)) fail(output->geterror());
-    const bool written = linear ? output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data())
-                                : output->write_image(OIIO::TypeDesc::UINT8, screen.data());
-    if (!written || !output->close()) fail(output->geterror());
-    return bytes;
+    if (!output->set_ioproxy(&memory) || !output->open(std::string("memory.") + format, spec) ||
+        !output->write_image(type, texels) || !output->close())
+        fail_to_encode(path, output->geterror());
+    traces::OutputFile file(path);
+    file.write(std::span<const std::uint8_t>(bytes));
+    file.commit();
+}
+
+OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height, int channels, OIIO::TypeDesc type) {
+    return {static_cast<int>(width), static_cast<int>(height), channels, type};
 }
 
 }  // namespace
@@ -152,16 +151,41 @@ void check_image_name(const std::string& path) { require_kind(path); }
 
 void write_image(const std::string& path, const Image& image, float exposure_stops) {
     const FileKind kind = require_kind(path);
-    if (image.width == 0 || image.height == 0 || image.width > 65535 || image.height > 65535 ||
-        image.pixels.size() != std::size_t{image.width} * image.height)
-        throw Error(
-            fmt::format("{}: expected an image of 1 to 65535 pixels on each side, found {} x {} with {} pixels; "
-                        "choose another size",
-                        path, image.width, image.height, image.pixels.size()));
-    const std::vector<unsigned char> bytes = encode(path, kind, image, exposure_stops);
-    traces::OutputFile file(path);
-    file.write(std::span<const std::uint8_t>(bytes));
-    file.commit();
+    check_size(path, image.width, image.height, image.pixels.size());
+    if (kind == FileKind::exr || kind == FileKind::hdr) {
+        OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::FLOAT);
+        if (kind == FileKind::exr) spec.attribute("compression", "zip");
+        return write_encoded(path, kind == FileKind::exr ? "openexr" : "hdr", spec, OIIO::TypeDesc::FLOAT,
+                             image.pixels.data());
+    }
+    std::vector<std::array<std::uint8_t, 3>> screen;
+    screen.reserve(image.pixels.size());
+    for (const Vec3 pixel : image.pixels) screen.push_back(tone_map(pixel, exposure_stops));
+    OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+    if (kind == FileKind::jpeg) spec.attribute("Compression", "jpeg:95");
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    write_encoded(path, kind == FileKind::png ? "png" : "jpeg", spec, OIIO::TypeDesc::UINT8, screen.data());
+}
+
+void write_screen_image(const std::string& path, const ScreenImage& image) {
+    check_size(path, image.width, image.height, image.pixels.size());
+    OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    write_encoded(path, "png", spec, OIIO::TypeDesc::UINT8, image.pixels.data());
+}
+
+void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height,
+                    const std::vector<Channel>& channels) {
+    OIIO::ImageSpec spec = spec_of(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", "zip");
+    std::vector<float> interleaved(std::size_t{width} * height * channels.size());
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        check_size(path, width, height, channels[c].values.size());
+        spec.channelnames[c] = channels[c].name;
+        for (std::size_t i = 0; i < channels[c].values.size(); ++i)
+            interleaved[i * channels.size() + c] = channels[c].values[i];
+    }
+    write_encoded(path, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
 }
 
 }  // namespace raycache::tracer

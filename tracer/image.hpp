@@ -1,6 +1,7 @@
-// The one header behind which OpenImageIO stands: decode a texture, write a picture.
+// The one header behind which OpenImageIO stands: decode a texture, write a picture or a map of numbers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,6 +38,22 @@ struct Image {
 /// filmic curve, then sRGB). Throws UsageError for another extension (before rendering: see check_image_name), Error
 /// when the file cannot be written. No partial file stays behind.
 void write_image(const std::string& path, const Image&, float exposure_stops = 0);
+
+/// Colours of a screen, sRGB, rows top to bottom.
+struct ScreenImage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::array<std::uint8_t, 3>> pixels;
+};
+/// Writes a .png as it is. Throws as write_image() does.
+void write_screen_image(const std::string& path, const ScreenImage&);
+
+/// Numbers by pixel, rows top to bottom.
+struct Channel {
+    std::string name;  ///< "layer.channel" or "channel"
+    std::vector<float> values;
+};
+/// Writes an .exr of 32-bit floats. Throws as write_image() does.
+void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height, const std::vector<Channel>&);
 
 /// Throws UsageError unless write_image() knows the extension of `path`.
 void check_image_name(const std::string& path);

@@ -51,14 +51,15 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
     table.column("cycles, " + other, Align::right);
     table.column("gain", Align::right);
     table.column("speed-up", Align::right);
-    table.column("", Align::left);
     for (const SpeedUp& s : all)
-        table.row({s.replay.name, fmt::format("{}", s.base.cycles),
-                   fmt::format("{:.2f}", ratio(all.front().base.cycles, s.base.cycles)),
-                   fmt::format("{}", s.other.cycles),
-                   fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)),
-                   fmt::format("{:.3f}", s.value()), s.replay.meaning});
-    return table.text();
+        table.row(
+            {s.replay.name, fmt::format("{}", s.base.cycles),
+             fmt::format("{:.2f}", ratio(all.front().base.cycles, s.base.cycles)), fmt::format("{}", s.other.cycles),
+             fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)), fmt::format("{:.3f}", s.value())});
+    std::string text = table.text() + "\n";
+    for (const SpeedUp& s : all)
+        if (*s.replay.meaning) text += fmt::format("{}: {}\n", s.replay.name, s.replay.meaning);
+    return text;
 }
 
 std::string sentence(const std::vector<SpeedUp>& all) {

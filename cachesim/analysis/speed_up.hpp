@@ -30,7 +30,8 @@ struct SpeedUp {
     double value() const;
 };
 
-/// One line per replay: cycles of both, their ratio, and for each trace how much faster it is than as modelled.
+/// A table with one line per replay: cycles of both, their ratio, and for each trace how much faster it is than as
+/// modelled.
 std::string to_text(const std::vector<SpeedUp>&, const std::string& base, const std::string& other);
 
 /// The finding in plain words, from all of idealised_replays() in their order.

@@ -22,6 +22,8 @@
 
 namespace raycache::cachesim {
 
+using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
+
 class Hierarchy {
 public:
     Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
@@ -43,7 +45,11 @@ public:
     }
 
     /// From now on the sink, which must outlive this object, hears of the caches that it wants.
-    void observe(RequestSink& sink) { sink_ = &sink; }
+    void observe(RequestSink& sink) {
+        sink_ = &sink;
+        accesses_.resize(requests_.size());
+        missing_for_.resize(misses_.rounds());
+    }
 
     /// Rounds of a window: every SM may run so many rounds ahead of the others.
     std::size_t rounds() const { return misses_.rounds(); }
@@ -51,10 +57,10 @@ public:
     void add_rays(const traces::Record& record) { tally_.add_rays(record); }
 
     /// The warp access that an SM issues through one of its L1s in this round of the window; `elements`: one index per
-    /// active lane. Accesses of one SM come in order of rounds, accesses in one round in order of SMs; end_sm() comes
-    /// between accesses of different SMs.
-    void access(const traces::Record& record, const std::uint32_t* elements, unsigned sm, unsigned l1,
-                std::size_t round) {
+    /// active lane; `warp`: whose. Accesses of one SM come in order of rounds, accesses in one round in order of SMs;
+    /// end_sm() comes between accesses of different SMs.
+    void access(const traces::Record& record, const std::uint32_t* elements, const WarpPointer& warp, unsigned sm,
+                unsigned l1, std::size_t round) {
         Request like;
         like.group = tally_.group(record, kinds_[record.region]);
         like.region = record.region;
@@ -65,24 +71,34 @@ public:
                           count_loads_(record.region, record.mask, elements, made.sectors));
         misses_.reserve(round);
         mark(round, made.requests);
+        if (sink_) [[unlikely]]
+            announce({record, elements, warp->warp}, made.requests);
         pending_ += made.requests;
         if (pending_ >= batch_size) end_sm(sm);
     }
 
     /// The SM's accesses so far are all for now.
     void end_sm(unsigned sm) {
-        look_up(0, {requests_.data(), pending_}, sm * l1_per_sm_, sm);
+        look_up(0, {requests_.data(), pending_}, sm * l1_per_sm_, sm, accesses_);
         for (std::size_t level = 1; level < shared_; ++level) {
             keep_fetched();
-            look_up(level, {requests_.data(), pending_}, sm, sm);
+            look_up(level, {requests_.data(), pending_}, sm, sm, accesses_);
         }
         for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], requests_[i]);
+        if (sink_)
+            for (std::size_t i = 0; i < pending_; ++i)
+                if (requests_[i].sectors) missing_for_[rounds_[i]].push_back(accesses_[i]);
         pending_ = 0;
     }
 
     /// All SMs have run all rounds: the shared level's turn.
     void end_window() {
-        for (std::size_t round = 0; round < misses_.rounds(); ++round) look_up(shared_, misses_.take(round), 0, 0);
+        for (std::size_t round = 0; round < misses_.rounds(); ++round) {
+            look_up(shared_, misses_.take(round), 0, 0, missing_for_.empty() ? accesses_ : missing_for_[round]);
+            if (sink_) missing_for_[round].clear();
+        }
+        if (sink_) sink_->end_window();
+        issued_ = 0;
     }
 
     /// The counts of all windows that have ended.
@@ -103,25 +119,27 @@ private:
     }
     static constexpr std::size_t few = 16;
 
-    /// Leaves in the requests what the level fetches for them.
-    void look_up(std::size_t level, std::span<Request> requests, std::uint32_t first_cache, unsigned sm) {
+    /// Leaves in the requests what the level fetches for them. `accesses`: of each of them, while a sink listens.
+    void look_up(std::size_t level, std::span<Request> requests, std::uint32_t first_cache, unsigned sm,
+                 const std::vector<std::uint32_t>& accesses) {
         const bool observed = sink_ && sink_->wants(level, sm), widens = fills_[level].widens();
         if (observed || widens) {
             asked_.clear();
             for (const Request& request : requests) asked_.push_back(request.sectors);
         }
         levels_[level]->process(requests, first_cache);
-        if (observed) report(level, requests, sm);
+        if (observed) report(level, requests, sm, accesses);
         if (widens) tally_.add_unasked(level, requests, asked_);
         tally_.add_fetched(level, requests);
     }
 
-    void report(std::size_t level, std::span<const Request> answers, unsigned sm) const {
+    void report(std::size_t level, std::span<const Request> answers, unsigned sm,
+                const std::vector<std::uint32_t>& accesses) const {
         for (std::size_t i = 0; i < answers.size(); ++i) {
             const Request& answer = answers[i];
             const GroupKey key = tally_.key(answer.group);
             sink_->served(level, {answer.line * line_bytes_, asked_[i], answer.sectors & asked_[i], sm,
-                                  level == 0 ? answer.cache : 0u, key.ray, key.bounce, key.kind});
+                                  level == 0 ? answer.cache : 0u, key.ray, key.bounce, key.kind, accesses[i]});
         }
     }
 
@@ -132,9 +150,16 @@ private:
             requests_[kept] = requests_[i];
             requests_[kept].cache = 0;
             rounds_[kept] = rounds_[i];
+            if (sink_) accesses_[kept] = accesses_[i];
             kept += requests_[i].sectors != 0;
         }
         pending_ = kept;
+    }
+
+    /// Tells the sink of an access, and notes the number it has there for the requests that are about to be pending.
+    void announce(const IssuedAccess& access, std::size_t requests) {
+        sink_->issued(access);
+        std::fill_n(accesses_.begin() + static_cast<std::ptrdiff_t>(pending_), requests, issued_++);
     }
 
     unsigned l1_per_sm_;
@@ -151,7 +176,10 @@ private:
     std::size_t pending_ = 0;
     std::uint32_t line_bytes_;
     RequestSink* sink_ = nullptr;
-    std::vector<std::uint32_t> asked_;  ///< sectors asked for, while a level answers
+    std::vector<std::uint32_t> asked_;                     ///< sectors asked for, while a level answers
+    std::uint32_t issued_ = 0;                             ///< accesses of this window, while a sink listens
+    std::vector<std::uint32_t> accesses_;                  ///< of each pending request, while a sink listens
+    std::vector<std::vector<std::uint32_t>> missing_for_;  ///< likewise, of each request in misses_, by round
     MissWindow misses_;
 };
 

@@ -16,8 +16,6 @@
 
 namespace raycache::cachesim {
 
-using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
-
 class Multiprocessor {
 public:
     /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM.
@@ -89,7 +87,7 @@ private:
         record.mask = first_vector(warp.left);
         warp.left &= ~record.mask;
         if (!warp.left) ++warp.next;
-        memory.access(record, warp.elements, number_, warp.l1, round);
+        memory.access(record, warp.elements, traces_[warp.slot], number_, warp.l1, round);
         warp.elements += record.lanes();
         resume_slot_ = warp.slot + 1;
         if (warp.left || advance_to_access(warp, memory)) {

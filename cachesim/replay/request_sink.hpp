@@ -22,6 +22,14 @@ struct ServedRequest {
     traces::RayType ray = {};   ///< of the warp access, as are the next two
     std::uint8_t bounce = 0;
     traces::ObjectKind kind = {};
+    std::uint32_t access = 0;  ///< on whose behalf: how many IssuedAccess came before it in this window
+};
+
+/// A warp access, before its look-ups.
+struct IssuedAccess {
+    const traces::Record& record;
+    const std::uint32_t* elements;  ///< one for each active lane, lowest first; valid during the call
+    std::uint32_t warp = 0;         ///< WarpTrace::warp
 };
 
 class RequestSink {
@@ -31,6 +39,11 @@ public:
     /// Whether to hear of the caches of Gpu::levels[level] that belong to this SM, 0 for those that all share.
     virtual bool wants(std::size_t level, std::uint32_t sm) const = 0;
     virtual void served(std::size_t level, const ServedRequest&) = 0;
+
+    /// Comes once for every warp access, on whichever SM, before its look-ups.
+    virtual void issued(const IssuedAccess&) {}
+    /// All look-ups of the accesses issued so far have been answered; the next access is number 0.
+    virtual void end_window() {}
 };
 
 }  // namespace raycache::cachesim

@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 
+#include "cachesim/report/explanation.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/table.hpp"
 
@@ -140,6 +141,7 @@ std::string to_text(const Report& report) {
     text +=
         report.baseline.empty() ? ".\n" : fmt::format("; DRAM ratio: DRAM B/ray over that of {}.\n", report.baseline);
     text += factor_table(report, columns);
+    if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';
     for (const std::string& note : report.notes) text += "note: " + note + '\n';
     return text;

@@ -98,20 +98,8 @@ TimedStatistics TimedReplay::finish() {
     TimedStatistics& t = i.total;
     Cycle last = 0;
     for (const TimedSm& sm : i.sms) {
-        const TimedStatistics& s = sm.statistics;
         last = std::max(last, sm.last_end());
-        t.rays += s.rays;
-        t.warp_accesses += s.warp_accesses;
-        t.lane_accesses += s.lane_accesses;
-        t.instructions += s.instructions;
-        t.loads += s.loads;
-        t.l1.hits += s.l1.hits;
-        t.l1.merges += s.l1.merges;
-        t.l1.line_misses += s.l1.line_misses;
-        t.l1.sector_misses += s.l1.sector_misses;
-        t.visit_cycles += s.visit_cycles;
-        t.issue.busy += s.issue.busy;
-        t.l1_port.busy += s.l1_port.busy;
+        t += sm.statistics;
     }
     const Gpu& gpu = i.rules.gpu;
     t.cycles = last + i.rules.timing.launch_cycles;

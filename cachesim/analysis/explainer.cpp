@@ -1,0 +1,100 @@
+#include "cachesim/analysis/explainer.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// The sectors of a look-up, by what became of them.
+struct Verdict {
+    std::uint32_t asked, compulsory, capacity, conflict, lucky;
+
+    void add_to(MissCounts& counts, std::uint32_t sectors = ~std::uint32_t{0}) const {
+        const auto count = [&](std::uint32_t which) { return static_cast<unsigned>(std::popcount(which & sectors)); };
+        counts.lookups += count(asked);
+        counts.compulsory += count(compulsory);
+        counts.capacity += count(capacity);
+        counts.conflict += count(conflict);
+        counts.lucky_hits += count(lucky);
+    }
+};
+
+Verdict judge(const ServedRequest& request, const ShadowCache::Answer& shadow) {
+    const std::uint32_t missing = request.missing, again = missing & ~shadow.never_held;
+    return {request.asked, missing & shadow.never_held, again & shadow.absent, again & ~shadow.absent,
+            request.asked & ~missing & shadow.absent};
+}
+
+}  // namespace
+
+Explainer::Explainer(const Gpu& gpu, const std::vector<traces::Region>& regions, const ElementDepth& depth,
+                     const LanePixels* pixels)
+    : l1_per_sm_(gpu.l1_per_sm),
+      warps_per_cta_(gpu.warps_per_cta),
+      sectors_per_line_(gpu.l1().line_bytes / gpu.l1().sector_bytes),
+      line_bytes_(gpu.l1().line_bytes),
+      depth_(depth),
+      log_(regions, gpu.l1().line_bytes, gpu.l1().sector_bytes),
+      fetchers_(std::size_t{gpu.sms} * gpu.l1_per_sm),
+      with_pixels_(pixels != nullptr),
+      pixel_costs_(pixels ? PixelCosts(*pixels) : PixelCosts()) {
+    const std::size_t levels = gpu.levels.size();
+    for (std::size_t level = 0; level < levels; ++level) {
+        const CacheGeometry& geometry = gpu.levels[level];
+        const std::size_t caches = level + 1 == levels ? 1 : level == 0 ? fetchers_.size() : gpu.sms;
+        const unsigned fill = std::max(1u, geometry.fill_bytes / geometry.sector_bytes);
+        shadows_.emplace_back(caches, ShadowCache(geometry.bytes() / geometry.line_bytes, fill));
+    }
+    findings_.levels.resize(levels);
+}
+
+void Explainer::issued(const IssuedAccess& access) {
+    log_.add(access);
+    if (with_pixels_) pixel_costs_.add_access(access);
+}
+
+void Explainer::served(std::size_t level, const ServedRequest& request) {
+    const std::size_t cache = level == 0 ? request.sm * l1_per_sm_ + request.cache : request.sm;
+    const auto shadow = shadows_[level][cache].look_up(request.address / line_bytes_, request.asked, request.missing);
+    const Verdict verdict = judge(request, shadow);
+
+    LevelFindings& found = findings_.levels[level];
+    verdict.add_to(found.by_kind[static_cast<unsigned>(request.kind)]);
+    verdict.add_to(found.by_ray[static_cast<unsigned>(request.ray) * LevelFindings::bounces + request.bounce]);
+    if (depth_.known()) {
+        std::uint32_t left = request.asked;
+        const std::uint8_t region = log_[request.access].region;
+        log_.for_each_lane(request, [&](unsigned, std::uint32_t element, std::uint32_t sectors) {
+            const std::uint8_t depth = depth_(region, element);
+            if (depth != ElementDepth::none) verdict.add_to(found.by_depth[depth], sectors & left);
+            left &= ~sectors;
+            return left != 0;
+        });
+    }
+    if (level == 0) find_owners(request, cache, shadow.entry);
+    if (!with_pixels_) return;
+    if (level == 0) pixel_costs_.add_l1(log_, request);
+    if (level + 1 == shadows_.size()) pixel_costs_.add_last(log_, request);
+}
+
+void Explainer::find_owners(const ServedRequest& request, std::size_t cache, std::uint32_t entry) {
+    std::vector<std::uint32_t>& fetchers = fetchers_[cache];
+    fetchers.resize(shadows_[0][cache].entries() * sectors_per_line_);
+    std::uint32_t* const of_line = &fetchers[std::size_t{entry} * sectors_per_line_];
+    const std::uint32_t warp = log_[request.access].warp;
+    Sharing& sharing = findings_.sharing;
+    for (std::uint32_t left = request.asked & ~request.missing; left != 0; left &= left - 1) {
+        const std::uint32_t fetcher = of_line[std::countr_zero(left)];
+        ++(fetcher == warp                                     ? sharing.same_warp
+           : fetcher / warps_per_cta_ == warp / warps_per_cta_ ? sharing.same_cta
+                                                               : sharing.other_cta);
+    }
+    // What a fill brings beside the missing sectors came with them, unless it was there already: asked for and found.
+    const std::uint32_t found = request.asked & ~request.missing;
+    for (std::uint32_t left = shadows_[0][cache].filled(request.missing) & ~found; left != 0; left &= left - 1)
+        of_line[std::countr_zero(left)] = warp;
+}
+
+}  // namespace raycache::cachesim

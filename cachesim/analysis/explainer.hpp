@@ -1,0 +1,53 @@
+// Listens to the replay of one launch and finds out why each look-up hit or missed.
+//
+// Every cache of the GPU is shadowed by what it would be if it were fully associative (ShadowCache), which sorts its
+// misses into compulsory, capacity and conflict. A look-up of a sector is charged to the kind of object, the ray type
+// and bounce, and the BVH depth it was for; where several lanes ask for a sector, its depth is that of the lowest
+// lane's object. For each sector in an L1 the warp that fetched it is kept, which tells whom a later hit owes it to.
+//
+// Memory: the lines that each cache was ever asked for, and the accesses of one window of rounds.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cachesim/analysis/access_log.hpp"
+#include "cachesim/analysis/element_depth.hpp"
+#include "cachesim/analysis/findings.hpp"
+#include "cachesim/analysis/pixel_costs.hpp"
+#include "cachesim/analysis/shadow_cache.hpp"
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/request_sink.hpp"
+
+namespace raycache::cachesim {
+
+class Explainer final : public RequestSink {
+public:
+    /// For a replay of these regions on this GPU. `depth` must outlive this object, and so must `pixels`, null if no
+    /// costs of pixels are wanted.
+    Explainer(const Gpu&, const std::vector<traces::Region>& regions, const ElementDepth& depth,
+              const LanePixels* pixels = nullptr);
+
+    /// Complete after Replay::finish().
+    const Findings& findings() const { return findings_; }
+    const PixelCosts& pixel_costs() const { return pixel_costs_; }
+
+    bool wants(std::size_t, std::uint32_t) const override { return true; }
+    void issued(const IssuedAccess&) override;
+    void served(std::size_t level, const ServedRequest&) override;
+    void end_window() override { log_.clear(); }
+
+private:
+    void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t entry);
+
+    std::uint32_t l1_per_sm_, warps_per_cta_, sectors_per_line_, line_bytes_;
+    const ElementDepth& depth_;
+    AccessLog log_;
+    std::vector<std::vector<ShadowCache>> shadows_;     ///< by level, then cache
+    std::vector<std::vector<std::uint32_t>> fetchers_;  ///< by L1, then entry of its shadow x sector: a warp
+    bool with_pixels_;
+    PixelCosts pixel_costs_;
+    Findings findings_;
+};
+
+}  // namespace raycache::cachesim

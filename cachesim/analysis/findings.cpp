@@ -1,0 +1,41 @@
+#include "cachesim/analysis/findings.hpp"
+
+namespace raycache::cachesim {
+
+MissCounts& MissCounts::operator+=(const MissCounts& other) {
+    lookups += other.lookups;
+    compulsory += other.compulsory;
+    capacity += other.capacity;
+    conflict += other.conflict;
+    lucky_hits += other.lucky_hits;
+    return *this;
+}
+
+MissCounts LevelFindings::all() const {
+    MissCounts sum;
+    for (const MissCounts& c : by_kind) sum += c;
+    return sum;
+}
+
+LevelFindings& LevelFindings::operator+=(const LevelFindings& other) {
+    for (std::size_t i = 0; i < by_kind.size(); ++i) by_kind[i] += other.by_kind[i];
+    for (std::size_t i = 0; i < by_ray.size(); ++i) by_ray[i] += other.by_ray[i];
+    for (std::size_t i = 0; i < by_depth.size(); ++i) by_depth[i] += other.by_depth[i];
+    return *this;
+}
+
+Sharing& Sharing::operator+=(const Sharing& other) {
+    same_warp += other.same_warp;
+    same_cta += other.same_cta;
+    other_cta += other.other_cta;
+    return *this;
+}
+
+Findings& Findings::operator+=(const Findings& other) {
+    if (levels.empty()) levels.resize(other.levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) levels[i] += other.levels[i];
+    sharing += other.sharing;
+    return *this;
+}
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,85 @@
+#include "cachesim/report/explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/report/estimate.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+Sums sectors_per_ray(const ExplainedTrace& trace, std::uint64_t Counters::*sectors) {
+    Sums sums;
+    for (const LaunchStatistics& launch : trace.launches) {
+        const Counters all = launch.all();
+        sums.y.push_back(static_cast<double>(all.*sectors));
+        sums.x.push_back(static_cast<double>(all.rays));
+    }
+    return sums;
+}
+
+Estimate ratio(const Explanation& e, std::uint64_t Counters::*sectors) {
+    return ratio_to_baseline(sectors_per_ray(e.other, sectors), sectors_per_ray(e.base, sectors));
+}
+
+/// "32.0 % fewer", "4.1 % more".
+std::string change(double ratio) {
+    return fmt::format("{:.1f} % {}", 100 * std::fabs(ratio - 1), ratio < 1 ? "fewer" : "more");
+}
+
+bool certain(const Estimate& ratio) { return !ratio.half_width || std::fabs(ratio.mean - 1) > *ratio.half_width; }
+
+}  // namespace
+
+Counters ExplainedTrace::totals() const {
+    Counters sum;
+    for (const LaunchStatistics& launch : launches) sum += launch.all();
+    return sum;
+}
+
+Estimate dram_bytes_ratio(const Explanation& e) { return ratio(e, &Counters::dram_sectors); }
+Estimate l2_bytes_ratio(const Explanation& e) { return ratio(e, &Counters::l2_sectors); }
+
+std::string sentence(const Explanation& e) {
+    const Counters base = e.base.totals(), other = e.other.totals();
+    const auto factors = traffic_factors(base, other);
+    if (!factors) return "There is no DRAM traffic per ray in both traces, so there is no ratio to explain.";
+    const Estimate dram = dram_bytes_ratio(e), l2 = l2_bytes_ratio(e);
+    const auto bytes = [&](const Counters& c) {
+        return static_cast<double>(c.dram_sectors) * e.sector_bytes / static_cast<double>(c.rays);
+    };
+    std::string text =
+        fmt::format("{} reads {} DRAM bytes per ray than {} ({:.1f} against {:.1f}) and {} L2-to-L1 bytes",
+                    e.other.name, change(dram.mean), e.base.name, bytes(other), bytes(base), change(l2.mean));
+    if (const auto most = main_term(*factors))
+        text += fmt::format("; {} does most, x{:.3f} ({})", most->term->name, most->factor, most->meaning());
+    text += fmt::format("; with equal miss rates x{:.3f} would remain, the L1 and L2 miss rates give x{:.3f}",
+                        factors->work * factors->simt_efficiency * factors->coalescing,
+                        factors->l1_locality * factors->l2_locality);
+    if (!dram.half_width) return text + "; from one sample index, so without a confidence interval.";
+    if (certain(dram)) return text + ".";
+    return text + fmt::format("; but with {} sample indices the ratio is {:.3f} ±{:.3f}, no certain difference.",
+                              e.base.launches.size(), dram.mean, *dram.half_width);
+}
+
+std::string factor_sentences(const Report& report) {
+    std::string text;
+    for (const Row& row : report.rows) {
+        if (!row.factors || !row.dram_bytes_ratio) continue;
+        const auto most = main_term(*row.factors);
+        if (!most) continue;
+        text += fmt::format("{}, N {}, {}{}: ", row.strategy, row.spp, row.gpu,
+                            report.by == GroupBy::none ? "" : ", " + row.group);
+        if (certain(*row.dram_bytes_ratio))
+            text += fmt::format("{} DRAM bytes/ray, most by {}, x{:.3f} ({}).\n", change(row.dram_bytes_ratio->mean),
+                                most->term->name, most->factor, most->meaning());
+        else
+            text += "no certain difference in DRAM bytes/ray.\n";
+    }
+    return text;
+}
+
+}  // namespace raycache::cachesim

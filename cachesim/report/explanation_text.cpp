@@ -1,0 +1,248 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/report/explanation.hpp"
+#include "cachesim/report/groups.hpp"
+#include "cachesim/report/table.hpp"
+#include "cachesim/report/waterfall.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+using Align = TextTable::Align;
+constexpr std::size_t columns = 110;
+
+std::string decimals(double value, int digits) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+/// About four digits.
+std::string figure(double value) {
+    const double size = std::fabs(value);
+    return decimals(value, size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 1 ? 3 : 4);
+}
+std::string with_interval(const Estimate& e) {
+    return decimals(e.mean, 3) + (std::isfinite(e.mean) && e.half_width ? " ±" + decimals(*e.half_width, 3) : "");
+}
+double quotient(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
+std::string percent(std::uint64_t part, std::uint64_t whole) { return decimals(100 * quotient(part, whole), 1); }
+
+Counters sum_of(const LaunchGroup& group) {
+    Counters sum;
+    for (const Counters& c : group.by_launch) sum += c;
+    return sum;
+}
+
+/// Counts of both traces, over all rays of each, as cells.
+class Pair {
+public:
+    explicit Pair(const Explanation& e) : base_rays_(e.base.totals().rays), other_rays_(e.other.totals().rays) {}
+
+    std::string base(std::uint64_t count) const { return figure(quotient(count, base_rays_)); }
+    std::string other(std::uint64_t count) const { return figure(quotient(count, other_rays_)); }
+    std::string ratio(std::uint64_t base_count, std::uint64_t other_count) const {
+        return decimals(quotient(other_count, other_rays_) / quotient(base_count, base_rays_), 3);
+    }
+
+private:
+    std::uint64_t base_rays_, other_rays_;
+};
+
+std::string identity_table(const Explanation& e) {
+    const Counters base = e.base.totals(), other = e.other.totals();
+    TextTable table;
+    table.column("factor", Align::left);
+    table.column("", Align::left);
+    for (const std::string& title : {e.base.name, e.other.name, std::string("ratio")})
+        table.column(title, Align::right);
+    for (const FactorTerm& term : factor_terms)
+        table.row({term.name, term.quantity, figure(term.value(base)), figure(term.value(other)),
+                   decimals(term.value(other) / term.value(base), 3)});
+    const auto bytes = [&](const char* name, std::uint64_t Counters::*sectors, const Estimate& ratio) {
+        table.row({"product", name, figure(e.sector_bytes * quotient(base.*sectors, base.rays)),
+                   figure(e.sector_bytes * quotient(other.*sectors, other.rays)), with_interval(ratio)});
+    };
+    bytes("L2-to-L1 bytes/ray", &Counters::l2_sectors, l2_bytes_ratio(e));
+    bytes("DRAM bytes/ray", &Counters::dram_sectors, dram_bytes_ratio(e));
+    return table.text();
+}
+
+std::string bars(const Explanation& e) {
+    const auto factors = traffic_factors(e.base.totals(), e.other.totals());
+    if (!factors || !(factors->product() > 0)) return {};
+    std::vector<WaterfallStep> steps;
+    for (const FactorTerm& term : factor_terms) {
+        steps.push_back({term.name, (*factors).*term.factor});
+        if (term.factor == &Factors::l1_locality) steps.push_back({"= L2-to-L1 bytes", 1, true});
+    }
+    steps.push_back({"= DRAM bytes", 1, true});
+    return "\nBytes per ray, factor by factor; logarithmic scale, to the left is less traffic\n\n" +
+           waterfall(steps, columns);
+}
+
+/// The identity of each group, and what it contributes to the change of the whole.
+std::string group_table(const Explanation& e) {
+    const auto groups = split(e.base.launches, e.by), others = split(e.other.launches, e.by);
+    const Counters base_all = e.base.totals(), other_all = e.other.totals();
+    const auto per_all = [&](const Counters& base, const Counters& other) {
+        return quotient(other.dram_sectors, other_all.rays) - quotient(base.dram_sectors, base_all.rays);
+    };
+    TextTable table;
+    table.column("group", Align::left);
+    for (const char* title : {"base B/ray", "other B/ray", "ratio"}) table.column(title, Align::right);
+    for (const FactorTerm& term : factor_terms) table.column(term.name, Align::right);
+    table.column("% of change", Align::right);
+    for (const LaunchGroup& group : groups) {
+        const auto match =
+            std::find_if(others.begin(), others.end(), [&](const LaunchGroup& g) { return g.name == group.name; });
+        const Counters base = sum_of(group), other = match == others.end() ? Counters{} : sum_of(*match);
+        const double before = e.sector_bytes * quotient(base.dram_sectors, base.rays);
+        const double after = e.sector_bytes * quotient(other.dram_sectors, other.rays);
+        std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(after / before, 3)};
+        for (const FactorTerm& term : factor_terms) cells.push_back(decimals(term.value(other) / term.value(base), 3));
+        cells.push_back(decimals(100 * per_all(base, other) / per_all(base_all, other_all), 1));
+        table.row(std::move(cells));
+    }
+    return fmt::format(
+               "\nThe same for each group: DRAM bytes per ray of the group, ratios {} / {}, and the group's\n"
+               "share of the change in DRAM bytes per ray of the whole\n\n",
+               e.other.name, e.base.name) +
+           table.text();
+}
+
+std::string class_table(const Explanation& e) {
+    const Pair per_ray(e);
+    TextTable table;
+    table.column("sectors/ray", Align::left);
+    for (const std::string& name : {e.base.name, e.other.name}) {
+        table.column(name, Align::right);
+        table.column("%", Align::right);
+    }
+    table.column("ratio", Align::right);
+    for (std::size_t level = 0; level < e.base.findings.levels.size(); ++level) {
+        const MissCounts base = e.base.findings.levels[level].all(), other = e.other.findings.levels[level].all();
+        const auto row = [&](const std::string& name, std::uint64_t b, std::uint64_t o, bool of_misses) {
+            table.row({fmt::format("L{} {}", level + 1, name), per_ray.base(b),
+                       of_misses ? percent(b, base.misses()) : percent(b, base.lookups), per_ray.other(o),
+                       of_misses ? percent(o, other.misses()) : percent(o, other.lookups), per_ray.ratio(b, o)});
+        };
+        row("look-ups", base.lookups, other.lookups, false);
+        row("misses", base.misses(), other.misses(), false);
+        row("  compulsory", base.compulsory, other.compulsory, true);
+        row("  capacity", base.capacity, other.capacity, true);
+        row("  conflict", base.conflict, other.conflict, true);
+        row("lucky hits", base.lucky_hits, other.lucky_hits, false);
+    }
+    return "\nMisses by class\n\n" + table.text() +
+           "\ncompulsory: the cache had never held the sector; capacity: a fully associative LRU cache of as many "
+           "lines lacks it\ntoo; conflict: that cache would have had it; lucky: a hit where that cache would have "
+           "missed. Classes in % of the\nmisses, the rest in % of the look-ups.\n";
+}
+
+/// Where the misses are, one group of rows after the other.
+std::string place_table(const Explanation& e) {
+    const Pair per_ray(e);
+    const LevelFindings &base1 = e.base.findings.levels.front(), &other1 = e.other.findings.levels.front();
+    const LevelFindings &base2 = e.base.findings.levels.back(), &other2 = e.other.findings.levels.back();
+    TextTable table;
+    table.column("", Align::left);
+    for (const char* title :
+         {"L1 misses: base", "other", "ratio", "L1 miss %: base", "other", "DRAM sectors: base", "other", "ratio"})
+        table.column(title, Align::right);
+    const auto row = [&](const std::string& name, const std::function<MissCounts(const LevelFindings&)>& of) {
+        const MissCounts b1 = of(base1), o1 = of(other1), b2 = of(base2), o2 = of(other2);
+        if (b1.lookups + o1.lookups == 0) return;
+        table.row({name, per_ray.base(b1.misses()), per_ray.other(o1.misses()), per_ray.ratio(b1.misses(), o1.misses()),
+                   percent(b1.misses(), b1.lookups), percent(o1.misses(), o1.lookups), per_ray.base(b2.misses()),
+                   per_ray.other(o2.misses()), per_ray.ratio(b2.misses(), o2.misses())});
+    };
+    row("all", &LevelFindings::all);
+    constexpr const char* kinds[] = {"nodes", "triangles", "texels"};
+    for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
+        row(kinds[kind], [kind](const LevelFindings& f) { return f.by_kind[kind]; });
+    constexpr const char* rays[] = {"camera", "bounce", "shadow"};
+    for (unsigned ray = 0; ray < traces::ray_types; ++ray)
+        for (unsigned bounce = 0; bounce < LevelFindings::bounces; ++bounce)
+            row(ray == 0 && bounce == 0 ? "camera" : fmt::format("{} {}", rays[ray], bounce),
+                [=](const LevelFindings& f) { return f.by_ray[ray * LevelFindings::bounces + bounce]; });
+    bool depth = false;
+    for (unsigned first = 0; first < LevelFindings::depths; first += 4) {
+        row(fmt::format("depth {}-{}", first, first + 3), [&](const LevelFindings& f) {
+            MissCounts sum;
+            for (unsigned d = first; d < std::min(first + 4, LevelFindings::depths); ++d) sum += f.by_depth[d];
+            depth |= sum.lookups != 0;
+            return sum;
+        });
+    }
+    return "\nMisses by kind of object, ray and BVH depth: sectors per ray, over all rays\n\n" + table.text() +
+           (depth ? "\ndepth: links from the root of the BVH; the triangles of a leaf are as deep as the leaf.\n"
+                  : "\nno depth in this trace: its nodes have no links.\n");
+}
+
+std::string sharing_table(const Explanation& e) {
+    const Pair per_ray(e);
+    const Sharing &base = e.base.findings.sharing, &other = e.other.findings.sharing;
+    TextTable table;
+    table.column("L1 hits on a sector fetched by", Align::left);
+    for (const std::string& name : {e.base.name, e.other.name}) {
+        table.column(name, Align::right);
+        table.column("% of hits", Align::right);
+    }
+    table.column("ratio", Align::right);
+    const auto row = [&](const char* name, std::uint64_t b, std::uint64_t o) {
+        table.row({name, per_ray.base(b), percent(b, base.hits()), per_ray.other(o), percent(o, other.hits()),
+                   per_ray.ratio(b, o)});
+    };
+    row("the same warp", base.same_warp, other.same_warp);
+    row("another warp of the CTA", base.same_cta, other.same_cta);
+    row("another CTA", base.other_cta, other.other_cta);
+    return "\nSharing: to whom L1 hits are owed, sectors per ray\n\n" + table.text();
+}
+
+/// Breaks lines between words.
+std::string wrapped(const std::string& text) {
+    std::string out;
+    std::size_t line = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        if (line != 0 && line + 1 + (end - at) > columns) {
+            out += '\n';
+            line = 0;
+        } else if (line != 0) {
+            out += ' ';
+            ++line;
+        }
+        out += text.substr(at, end - at);
+        line += end - at;
+        at = end + 1;
+    }
+    return out + '\n';
+}
+
+}  // namespace
+
+std::string to_text(const Explanation& e) {
+    std::string samples;
+    for (const LaunchStatistics& launch : e.base.launches)
+        samples += fmt::format("{}{}", samples.empty() ? "" : ", ", launch.sample);
+    std::string text = wrapped(fmt::format("{} against {}: {}, N {}, sample indices {}, GPU {}", e.other.name,
+                                           e.base.name, e.scene, e.spp, samples, e.gpu));
+    text += fmt::format("\nTraffic: {} B x the product of five factors\n\n", e.sector_bytes) + identity_table(e);
+    text += bars(e);
+    if (e.by != GroupBy::none) text += group_table(e);
+    text += class_table(e) + place_table(e) + sharing_table(e);
+    if (!e.speed_ups.empty())
+        text +=
+            "\nPredicted time, and what is left of the speed-up when one cost is taken away; gain: how much faster "
+            "than as "
+            "modelled\n\n" +
+            to_text(e.speed_ups, e.base.name, e.other.name);
+    text += '\n' + wrapped(sentence(e));
+    return e.speed_ups.empty() ? text : text + wrapped(sentence(e.speed_ups));
+}
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""raycache explain: the identity, miss classes, sharing, heat maps, and what it refuses."""
+import struct
+
+from support import GPU, LAUNCHES, SCENE, ProgramTest, main
+
+FUSED = ["explain", "--scene", *SCENE, *LAUNCHES, *GPU]
+CLASSES = ("compulsory", "capacity", "conflict")
+
+
+def exr_channels(data):
+    """Names of the channels of an OpenEXR file: the 'channels' attribute of its header."""
+    at = data.index(b"channels\0chlist\0") + len(b"channels\0chlist\0") + 4
+    names = []
+    while data[at] != 0:
+        end = data.index(b"\0", at)
+        names.append(data[at:end].decode())
+        at = end + 1 + 16
+    return names
+
+
+class Explain(ProgramTest):
+    def traces(self):
+        return [self.capture(f"{name}.rct", "--strategy", name) for name in ("cranley-patterson", "coherent")]
+
+    def explained(self, *options):
+        return self.succeeds("explain", *self.traces(), *GPU, *options)
+
+    def test_the_factors_multiply_to_the_ratio_of_dram_bytes_per_ray_that_compare_finds(self):
+        base, other = self.traces()
+        report = self.succeeds("explain", base, other, *GPU, "--json").json
+        product = 1
+        for factor in report["factors"].values():
+            product *= factor["factor"]
+            self.assertAlmostEqual(factor["other"] / factor["base"], factor["factor"], delta=1e-12)
+        self.assertAlmostEqual(product / report["dram_bytes_ratio"]["mean"], 1, delta=1e-9)
+        rows = self.succeeds("compare", base, other, *GPU, "--json").json["rows"]
+        for row, side in zip(rows, ("base", "other"), strict=True):
+            for key, value in report[side]["totals"].items():
+                self.assertEqual(row["totals"][key], value, key)
+        self.assertEqual(rows[1]["dram_bytes_ratio"], report["dram_bytes_ratio"])
+
+    def test_every_miss_is_in_one_class_and_every_hit_has_a_fetcher(self):
+        report = self.explained("--json").json
+        for side in ("base", "other"):
+            totals, levels = report[side]["totals"], report[side]["levels"]
+            self.assertEqual(levels["l1"]["all"]["lookups"], totals["sectors"])
+            self.assertEqual(levels["l1"]["all"]["misses"], totals["l2_sectors"])
+            self.assertEqual(levels["l2"]["all"]["lookups"], totals["l2_sectors"])
+            self.assertEqual(levels["l2"]["all"]["misses"], totals["dram_sectors"])
+            self.assertEqual(sum(report[side]["l1_hits_by_fetcher"].values()),
+                             totals["sectors"] - totals["l2_sectors"])
+            for level in levels.values():
+                cuts = [[level["all"]], list(level["by_object"].values()), level["by_ray"]]
+                for rows in cuts:
+                    for row in rows:
+                        self.assertEqual(sum(row[c] for c in CLASSES), row["misses"])
+                    for key in ("lookups", "misses", *CLASSES, "lucky_hits"):
+                        self.assertEqual(sum(row[key] for row in rows), level["all"][key], key)
+                # Nodes and triangles have a depth, texels do not.
+                deep = sum(row["misses"] for row in level["by_depth"])
+                solid = sum(level["by_object"][kind]["misses"] for kind in ("node", "triangle"))
+                self.assertEqual(deep, solid)
+                self.assertEqual(level["by_depth"][0]["depth"], 0)
+
+    def test_the_groups_add_up_to_the_whole(self):
+        for by in ("bounce", "ray"):
+            report = self.explained("--by", by, "--json").json
+            self.assertGreaterEqual(len(report["groups"]), 3)
+            for side in ("base", "other"):
+                for key, value in report[side]["totals"].items():
+                    self.assertEqual(sum(group[side][key] for group in report["groups"]), value, key)
+
+    def test_the_text_has_every_part_in_110_columns_and_ends_with_a_sentence(self):
+        text = self.explained("--by", "bounce").text
+        for part in ("coherent against cranley-patterson", "SIMT efficiency", "logarithmic", "share of the change",
+                     "compulsory", "depth 0-3", "triangles", "shadow 0", "another CTA", "◄"):
+            self.assertIn(part, text)
+        self.assertLessEqual(max(len(line) for line in text.splitlines()), 110)
+        self.assertNotIn("nan", text)
+        self.assertRegex(text, r"coherent reads [\d.]+ % (fewer|more) DRAM bytes per ray than cranley-patterson")
+        self.assertTrue(text.endswith(".\n"))
+
+    def test_fused_and_from_files_with_any_threads_are_the_same(self):
+        from_files = self.explained("--json").stdout
+        fused = [*FUSED, "--strategy", "cranley-patterson,coherent", "--json"]
+        self.assertEqual(self.succeeds(*fused, "--threads", "1").stdout, from_files)
+        self.assertEqual(self.succeeds(*fused, "--threads", "3", "--heatmap", "x.exr").stdout, from_files)
+
+    def test_a_trace_explained_by_itself_has_only_ones(self):
+        trace = self.capture()
+        report = self.succeeds("explain", trace, trace, *GPU, "--json").json
+        self.assertEqual({factor["factor"] for factor in report["factors"].values()}, {1})
+        self.assertEqual(report["base"]["levels"], report["other"]["levels"])
+        self.succeeds("explain", trace, trace, *GPU)
+
+    def test_a_heat_map_is_an_exr_of_six_channels_and_a_png_beside_it(self):
+        printed = self.explained("--heatmap", "why.exr", "--threads", "2").text
+        self.assertIn("Misses by class", printed)
+        exr, png = self.path("why.exr").read_bytes(), self.path("why.png").read_bytes()
+        self.assertEqual(sorted(exr_channels(exr)),
+                         sorted(f"{layer}.{name}" for layer in ("base", "other")
+                                for name in ("DRAM bytes", "L1 miss rate", "active lanes")))
+        self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
+        width, height = struct.unpack(">II", png[16:24])
+        self.assertGreater(width, 3 * 384)
+        self.assertGreater(height, 3 * 288)
+        first = exr, png
+        self.explained("--heatmap", "why.exr", "--threads", "1")
+        self.assertEqual((self.path("why.exr").read_bytes(), self.path("why.png").read_bytes()), first)
+
+    def test_a_warp_of_one_pixel_has_a_heat_map_too(self):
+        self.succeeds(*FUSED, "--thread-map", "samples", "--heatmap", "s.exr")
+
+    def test_compare_says_in_one_line_which_factor_does_most(self):
+        text = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, *GPU).text
+        for name in ("coherent", "micro-jitter"):
+            self.assertRegex(text, rf"(?m)^{name}, N 64, gtx-980-ti: (no certain|.* DRAM bytes/ray, most by ).*\.$")
+
+    def test_traces_of_different_pictures_are_refused_with_what_differs(self):
+        base = self.capture("base.rct")
+        for options, words in ((["--resolution", "32x32"], ["resolution", "64x48", "32x32"]),
+                               (["--bounces", "1"], ["bounces"]),
+                               (["--detail", "60000"], ["scene"]),
+                               (["--thread-map", "samples"], ["thread map", "tile", "samples"]),
+                               (["--trace-samples", "1"], ["sample indices", "--trace-samples"]),
+                               (["--seed", "5"], ["sample indices", "--seed"])):
+            self.path("other.rct").unlink(missing_ok=True)
+            chosen = [option for option in (*SCENE, *LAUNCHES)]
+            for flag, value in zip(options[::2], options[1::2]):
+                if flag in chosen:
+                    chosen[chosen.index(flag) + 1] = value
+                else:
+                    chosen += [flag, value]
+            self.succeeds("capture", *chosen, "--spp", "64", "-o", "other.rct")
+            line = self.refuses(1, "explain", base, "other.rct", *GPU, mentions=words)
+            self.assertIn("other.rct: expected", line)
+
+    def test_wrong_use_is_refused(self):
+        base, other = self.traces()
+        self.refuses(2, "explain", *GPU, mentions=["two trace files", "--scene"])
+        self.refuses(2, "explain", base, *GPU, mentions=["two"])
+        self.refuses(2, "explain", base, other, mentions=["--gpu"])
+        self.refuses(2, "explain", base, other, "--gpu", "no-such", mentions=["no-such"])
+        self.refuses(2, "explain", base, other, *GPU, "--by", "object", mentions=["--by"])
+        self.refuses(2, "explain", base, other, *GPU, "--heatmap", "map.png", mentions=[".exr"])
+        self.refuses(2, *FUSED, "--strategy", "coherent", mentions=["BASE,OTHER"])
+        self.refuses(2, *FUSED, "--strategy", "coherent,nothing", mentions=["nothing"])
+        self.refuses(1, "explain", base, "missing.rct", *GPU, mentions=["missing.rct"])
+        self.refuses(1, "explain", base, other, *GPU, "--heatmap", "nowhere/map.exr", mentions=["nowhere/map.exr"])
+
+
+if __name__ == "__main__":
+    main()

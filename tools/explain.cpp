@@ -1,0 +1,120 @@
+// raycache explain: why one trace is kinder to a GPU's caches than another.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "tools/explain_job.hpp"
+#include "tools/heat_map.hpp"
+#include "tools/options.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::vector<std::string> traces;
+    SceneOptions scene;
+    std::vector<std::string> strategies{"cranley-patterson", "micro-jitter"};
+    std::string sequence = "sobol";
+    std::uint64_t spp = 64;
+    SamplingOptions sampling;
+    ReportOptions gpus;
+    std::string heat_map;
+    ThreadOptions threads;
+};
+
+void explain_and_print(const Options& o, const std::vector<LaunchSource>& sources,
+                       const std::vector<std::string>& names) {
+    ExplainRequest request;
+    request.sources = {&sources[0], &sources[1]};
+    request.names = {names[0], names[1]};
+    request.gpu = o.gpus.load_gpus().front();
+    request.by = o.gpus.by == "bounce" ? cachesim::GroupBy::bounce
+                 : o.gpus.by == "ray"  ? cachesim::GroupBy::ray
+                                       : cachesim::GroupBy::none;
+    request.pixels = !o.heat_map.empty();
+    const Explained done = explain(request);
+    const cachesim::Explanation& e = done.explanation;
+    if (request.pixels)
+        write_heat_maps(
+            o.heat_map,
+            fmt::format("{}, N {}, {} sample indices, GPU {}", e.scene, e.spp, e.base.launches.size(), e.gpu),
+            make_heat_map(e.base.name, *sources[0].header, done.costs[0], e.sector_bytes),
+            make_heat_map(e.other.name, *sources[1].header, done.costs[1], e.sector_bytes));
+    print(o.gpus.json ? cachesim::to_json(e) : cachesim::to_text(e));
+}
+
+void explain_scene(const Options& o) {
+    std::vector<tracer::CaptureSettings> settings;
+    std::set<std::string> warnings;
+    for (const std::string& strategy : o.strategies) {
+        settings.push_back(o.sampling.capture(o.scene, o.sequence, strategy, o.spp));
+        warnings.insert(tracer::make_decorrelation(strategy, settings.back().strategy.parameters)->warning());
+    }
+    for (const std::string& w : warnings)
+        if (!w.empty()) warn(w);
+    const auto scene = o.scene.prepare();
+    std::vector<std::unique_ptr<tracer::Capture>> captures;
+    for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
+    explain_and_print(o, sources_of(captures), o.strategies);
+}
+
+void run(const Options& o) {
+    if (o.traces.empty() == o.scene.source.empty())
+        throw UsageError("nothing to explain; expected either two trace files or --scene, not both");
+    if (o.scene.source.empty() && o.traces.size() != 2)
+        throw UsageError(fmt::format("{} trace files; expected two: BASE and OTHER", o.traces.size()));
+    if (o.strategies.size() != 2)
+        throw UsageError(fmt::format("--strategy with {} names; expected two: BASE,OTHER", o.strategies.size()));
+    if (!o.heat_map.empty()) check_heat_map_name(o.heat_map);
+    o.gpus.load_gpus();  // refuses before anything takes time
+    const auto limit = o.threads.apply();
+    if (o.traces.empty()) return explain_scene(o);
+    const TraceFiles files(o.traces);
+    explain_and_print(o, files.sources, o.traces);
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "explain", "Explain why one trace causes more cache traffic than another, factor by factor and miss by miss");
+    command->add_option("TRACES", o->traces, "two trace files: BASE and OTHER");
+    command->add_option("--gpu", o->gpus.gpus, "GPU preset or FILE.toml (see 'raycache list gpus')")
+        ->required()
+        ->expected(1);
+    command->add_option("--set", o->gpus.changes, "KEY=VALUE: another value for a key of the GPU file; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--warps-per-sm", o->gpus.warps_per_sm, "resident warps of an SM, instead of the preset's")
+        ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
+    command
+        ->add_option("--by", o->gpus.by,
+                     "the factors also for each: none, bounce (path vertex), ray (camera, bounce, shadow)")
+        ->check(CLI::IsMember({"none", "bounce", "ray"}))
+        ->capture_default_str();
+    command->add_flag("--json", o->gpus.json, "print JSON");
+    command->add_option("--heatmap", o->heat_map,
+                        "FILE.exr: DRAM bytes, L1 miss rate and active lanes of each pixel; FILE.png shows them");
+    o->scene.add(*command, false);
+    command->add_option("--strategy", o->strategies, "with --scene: two decorrelations, BASE,OTHER")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->capture_default_str();
+    command->add_option("--sequence", o->sequence, "with --scene: the sequence of both")->capture_default_str();
+    command->add_option("--spp", o->spp, "with --scene: size N of the sample set")->capture_default_str();
+    o->sampling.add_launches(*command);
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    o->threads.add(*command);
+    command->footer(
+        "Examples:\n"
+        "  raycache explain cp.rct mj.rct --gpu gtx-980-ti\n"
+        "  raycache explain cp.rct mj.rct --gpu gtx-980-ti --by bounce --heatmap why.exr\n"
+        "  raycache explain --scene courtyard --strategy cranley-patterson,coherent --spp 64 --gpu h100");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

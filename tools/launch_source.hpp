@@ -1,0 +1,37 @@
+// Where launches come from: a trace file, or a capture made on the fly. Both hand over the same warps.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tracer/capture.hpp"
+#include "traces/header.hpp"
+#include "traces/reader.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::tools {
+
+/// Hands over the warps of one launch, in order.
+using WarpSink = std::function<void(traces::WarpTrace&&)>;
+
+struct LaunchSource {
+    const traces::Header* header;
+    std::function<void(std::uint32_t launch, const WarpSink&)> deliver;  ///< thread-safe
+};
+
+/// Opens trace files and keeps them open. Throws Error as traces::Reader does.
+struct TraceFiles {
+    explicit TraceFiles(const std::vector<std::string>& paths);
+    std::vector<std::unique_ptr<traces::Reader>> readers;
+    std::vector<LaunchSource> sources;
+};
+
+/// The captures must outlive their sources.
+std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::Capture>>&);
+
+std::uint64_t count_rays(const traces::WarpTrace&);
+
+}  // namespace raycache::tools
