@@ -93,9 +93,9 @@ std::string group_table(const Explanation& e) {
     };
     TextTable table;
     table.column("group", Align::left);
-    for (const char* title : {"base B/ray", "other B/ray", "ratio"}) table.column(title, Align::right);
+    for (const char* title : {"base", "other", "ratio"}) table.column(title, Align::right);
     for (const FactorTerm& term : factor_terms) table.column(term.name, Align::right);
-    table.column("% of change", Align::right);
+    table.column("change %", Align::right);
     for (const LaunchGroup& group : groups) {
         const auto match =
             std::find_if(others.begin(), others.end(), [&](const LaunchGroup& g) { return g.name == group.name; });
@@ -108,9 +108,9 @@ std::string group_table(const Explanation& e) {
         table.row(std::move(cells));
     }
     return fmt::format(
-               "\nThe same for each group: DRAM bytes per ray of the group, ratios {} / {}, and the group's\n"
-               "share of the change in DRAM bytes per ray of the whole\n\n",
-               e.other.name, e.base.name) +
+               "\nThe same for each group: DRAM bytes per ray of the group ({} and {}), the factors of\n"
+               "their ratio, and the group's share of the change in DRAM bytes per ray of the whole\n\n",
+               e.base.name, e.other.name) +
            table.text();
 }
 

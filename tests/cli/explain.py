@@ -21,7 +21,9 @@ def exr_channels(data):
 
 class Explain(ProgramTest):
     def traces(self):
-        return [self.capture(f"{name}.rct", "--strategy", name) for name in ("cranley-patterson", "coherent")]
+        names = ("cranley-patterson", "coherent")
+        return [self.path(f"{name}.rct") if self.path(f"{name}.rct").exists() else
+                self.capture(f"{name}.rct", "--strategy", name) for name in names]
 
     def explained(self, *options):
         return self.succeeds("explain", *self.traces(), *GPU, *options)

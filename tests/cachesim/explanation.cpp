@@ -1,0 +1,120 @@
+// The text of an explanation: factors, the one that does most, the waterfall, and the sentence.
+#include "cachesim/report/explanation.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/report/waterfall.hpp"
+
+using namespace raycache::cachesim;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+Counters counters(std::uint64_t rays, std::uint64_t steps, std::uint64_t accesses, std::uint64_t sectors,
+                  std::uint64_t l2, std::uint64_t dram) {
+    Counters c;
+    c.rays = rays;
+    c.steps = c.lane_accesses = steps;
+    c.warp_accesses = accesses;
+    c.sectors = sectors;
+    c.l2_sectors = l2;
+    c.dram_sectors = dram;
+    c.l1_hits = sectors - l2;
+    c.l2_hits = l2 - dram;
+    return c;
+}
+
+/// 40 steps/ray, 0.2 accesses/step, 8 sectors/access, half miss in L1, a quarter of these in L2.
+const Counters plain = counters(10, 400, 80, 640, 320, 80);
+
+/// As plain, but with half the warp accesses per step, and half again of L2's misses.
+const Counters better = counters(10, 400, 40, 320, 160, 60);
+
+LaunchStatistics launch(std::uint32_t sample, const Counters& counts) {
+    LaunchStatistics s;
+    s.sample = sample;
+    RayGroup group;
+    group.by_kind[0] = counts;
+    group.rays = counts.rays;
+    group.by_kind[0].rays = 0;
+    s.groups.push_back(group);
+    return s;
+}
+
+Explanation explanation(const std::vector<Counters>& base, const std::vector<Counters>& other) {
+    Explanation e;
+    e.scene = "box.glb";
+    e.gpu = "small";
+    e.spp = 64;
+    e.base.name = "plain";
+    e.other.name = "clever";
+    for (std::size_t i = 0; i < base.size(); ++i) {
+        e.base.launches.push_back(launch(static_cast<std::uint32_t>(i), base[i]));
+        e.other.launches.push_back(launch(static_cast<std::uint32_t>(i), other[i]));
+    }
+    e.base.findings.levels.resize(2);
+    e.other.findings.levels.resize(2);
+    return e;
+}
+
+}  // namespace
+
+TEST_CASE("the factors of two hand-made counts multiply to their ratio of DRAM bytes per ray") {
+    const auto f = traffic_factors(plain, better);
+    REQUIRE(f);
+    CHECK(f->work == 1);
+    CHECK(f->simt_efficiency == 0.5);
+    CHECK(f->coalescing == 1);
+    CHECK(f->l1_locality == 1);
+    CHECK(f->l2_locality == 1.5);
+    CHECK(f->product() == 0.75);
+    CHECK_FALSE(traffic_factors(plain, counters(10, 0, 0, 0, 0, 0)));
+}
+
+TEST_CASE("the main term is the one that moves furthest in the direction of the whole") {
+    const auto most = main_term(*traffic_factors(plain, better));
+    REQUIRE(most);
+    CHECK(std::string(most->term->name) == "SIMT efficiency");
+    CHECK(most->share > 1);  // L2 locality works against it
+    CHECK_THAT(most->meaning(), Contains("less divergence"));
+    const auto worse = main_term(*traffic_factors(better, plain));
+    REQUIRE(worse);
+    CHECK(worse->factor == 2);
+    CHECK_THAT(worse->meaning(), Contains("more divergence"));
+    CHECK_FALSE(main_term(Factors{}));
+}
+
+TEST_CASE("the sentence says how much, what does most, and what is a matter of caches") {
+    const std::string one = sentence(explanation({plain}, {better}));
+    CHECK_THAT(one, StartsWith("clever reads 25.0 % fewer DRAM bytes per ray than plain (192.0 against 256.0) and "
+                               "50.0 % fewer L2-to-L1 bytes; SIMT efficiency does most, x0.500 "));
+    CHECK_THAT(one, Contains("with equal miss rates x0.500 would remain, the L1 and L2 miss rates give x1.500"));
+    CHECK_THAT(one, EndsWith("from one sample index, so without a confidence interval."));
+    CHECK_THAT(sentence(explanation({plain, plain}, {better, better})), EndsWith("give x1.500."));
+}
+
+TEST_CASE("the sentence does not claim what the sample indices do not show") {
+    CHECK_THAT(sentence(explanation({plain, plain}, {better, counters(10, 400, 80, 640, 320, 81)})),
+               EndsWith("no certain difference."));
+    CHECK_THAT(sentence(explanation({counters(10, 400, 80, 640, 0, 0)}, {plain})), Contains("no ratio"));
+}
+
+TEST_CASE("an explanation of nothing is still a text") {
+    const std::string text = to_text(explanation({Counters{}}, {Counters{}}));
+    CHECK_THAT(text, !Contains("nan") && !Contains("inf"));
+    CHECK_THAT(text, Contains("no depth in this trace"));
+    CHECK_THAT(to_json(explanation({Counters{}}, {Counters{}})), Contains("null"));
+}
+
+TEST_CASE("each bar of a waterfall begins where the one before it ended") {
+    // x1/4 to x1 on 9 cells, so a factor of 2 is four cells.
+    CHECK(waterfall({{"a", 0.5}, {"b", 0.5}, {"c", 2}, {"= all", 1, true}}, 23) ==
+          "              x0.25  x1\n"
+          "a      x0.500     ◄███│\n"
+          "b      x0.500 ◄███    │\n"
+          "c      x2.000 ███►    │\n"
+          "= all  x0.500     ◄▒▒▒│\n");
+}
