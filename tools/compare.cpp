@@ -23,7 +23,7 @@ struct Options {
     ThreadOptions threads;
 };
 
-std::vector<cachesim::Series> compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
+void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
     std::vector<tracer::CaptureSettings> settings;
     std::set<std::string> warnings;
     for (const std::string& sequence : o.sequences)
@@ -38,7 +38,10 @@ std::vector<cachesim::Series> compare_fused(const Options& o, const std::vector<
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     captures.reserve(settings.size());
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    return replay_captures(captures, gpus);
+    if (o.report.timed)
+        o.report.publish(replay_captures_timed(captures, gpus));
+    else
+        o.report.publish(replay_captures(captures, gpus));
 }
 
 void run(const Options& o) {
@@ -46,7 +49,12 @@ void run(const Options& o) {
         throw UsageError("nothing to compare; expected either trace files or --scene, not both");
     const auto gpus = o.report.load_gpus();
     const auto limit = o.threads.apply();
-    o.report.publish(o.traces.empty() ? compare_fused(o, gpus) : replay_files(o.traces, gpus));
+    if (o.traces.empty())
+        compare_fused(o, gpus);
+    else if (o.report.timed)
+        o.report.publish(replay_files_timed(o.traces, gpus));
+    else
+        o.report.publish(replay_files(o.traces, gpus));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "traces/accelsim/import.hpp"
+#include "traces/error.hpp"
+#include "traces/rtwarp/import.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -16,6 +18,12 @@ struct Options {
 };
 
 void run(const Options& o) {
+    if (traces::looks_like_rtwarp(o.input)) {
+        if (o.fuse)
+            throw UsageError("--fuse: expected an Accel-Sim trace, found an RTWARP01 trace, whose objects are whole");
+        traces::import_rtwarp(o.input, o.output, program_name(), fmt::format("raycache import {}", o.input));
+        return;
+    }
     traces::ImportSettings settings;
     settings.fuse = o.fuse;
     settings.program = program_name();
@@ -36,8 +44,10 @@ void run(const Options& o) {
 
 void add_import(CLI::App& app) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("import", "Make a trace of the global loads of an Accel-Sim (NVBit) trace");
-    command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz")->required();
+    CLI::App* command = app.add_subcommand(
+        "import", "Make a trace of an Accel-Sim (NVBit) trace's global loads, or of an RTWARP01 trace");
+    command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz; or an RTWARP01 trace, plain or zstd")
+        ->required();
     command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
     command->add_flag("--fuse", o->fuse, "one access for loads of a warp that read on, lane by lane: a split object");
     command->footer(

@@ -179,6 +179,9 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
         ->required()
         ->delimiter(',')
         ->allow_extra_args(false);
+    app.add_option("--set", changes, "KEY=VALUE: another value for a key of every GPU file; may be repeated")
+        ->allow_extra_args(false);
+    app.add_flag("--timed", timed, "predict cycles: latencies, queues and bandwidths instead of order alone");
     app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's")
         ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
     app.add_option(
@@ -199,7 +202,7 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
 std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
     std::vector<cachesim::Gpu> loaded;
     for (const std::string& name : gpus) {
-        loaded.push_back(cachesim::load_gpu(name));
+        loaded.push_back(cachesim::load_gpu(name, changes));
         if (warps_per_sm != 0) loaded.back().warps_per_sm = warps_per_sm;
     }
     check(loaded);
@@ -215,26 +218,43 @@ void ReportOptions::check(const std::vector<cachesim::Gpu>& loaded) const {
             throw UsageError(
                 fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}", gpu.name,
                             gpu.levels.size()));
+    if (!counters.empty() && timed) throw UsageError("--counters with --timed; expected one of them");
     parse_by(by);
 }
 
-void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
-    // Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+namespace {
+
+/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+template <class Series>
+std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
     const std::string usual = "cranley-patterson";
-    const auto is_usual = [&](const cachesim::Series& s) { return s.strategy == usual; };
+    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
     const bool has_usual =
         std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
-    const cachesim::Report report =
-        cachesim::make_report(series, baseline.empty() && has_usual ? usual : baseline, parse_by(by));
-    if (!save.empty()) {
-        save_text(save + ".txt", cachesim::to_text(report));
-        save_text(save + ".json", cachesim::to_json(report));
-        save_text(save + ".csv", cachesim::to_csv(report));
+    return asked.empty() && has_usual ? usual : asked;
+}
+
+/// `shown`: what is printed unless JSON or CSV is asked for.
+template <class Report>
+void publish_report(const Report& report, const ReportOptions& o, const std::string& shown) {
+    if (!o.save.empty()) {
+        save_text(o.save + ".txt", cachesim::to_text(report));
+        save_text(o.save + ".json", cachesim::to_json(report));
+        save_text(o.save + ".csv", cachesim::to_csv(report));
     }
-    print(json                ? cachesim::to_json(report)
-          : csv               ? cachesim::to_csv(report)
-          : !counters.empty() ? cachesim::to_profiler_text(report)
-                              : cachesim::to_text(report));
+    print(o.json ? cachesim::to_json(report) : o.csv ? cachesim::to_csv(report) : shown);
+}
+
+}  // namespace
+
+void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
+    const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
+    publish_report(report, *this, counters.empty() ? cachesim::to_text(report) : cachesim::to_profiler_text(report));
+}
+
+void ReportOptions::publish(const std::vector<cachesim::TimedSeries>& series) const {
+    const auto report = cachesim::make_timed_report(series, baseline_of(series, baseline));
+    publish_report(report, *this, cachesim::to_text(report));
 }
 
 void ThreadOptions::add(CLI::App& app) {

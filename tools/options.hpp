@@ -9,6 +9,7 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/report.hpp"
+#include "cachesim/report/timed_report.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 
@@ -49,8 +50,9 @@ struct SamplingOptions {
 
 /// Which GPUs, and how the table is cut and printed.
 struct ReportOptions {
-    std::vector<std::string> gpus;
+    std::vector<std::string> gpus, changes;
     std::uint32_t warps_per_sm = 0;
+    bool timed = false;
     std::string by = "none", baseline, save, counters;
     bool json = false, csv = false;
 
@@ -60,6 +62,7 @@ struct ReportOptions {
     void check(const std::vector<cachesim::Gpu>&) const;
     /// Makes the report of `series`, prints it in the chosen format, and saves all formats where asked.
     void publish(const std::vector<cachesim::Series>& series) const;
+    void publish(const std::vector<cachesim::TimedSeries>& series) const;
 };
 
 /// --threads, and the limit it sets for the life of the object this returns.

@@ -15,7 +15,10 @@ struct Options {
 void run(const Options& o) {
     const auto gpus = o.report.load_gpus();
     const auto limit = o.threads.apply();
-    o.report.publish(replay_files({o.path}, gpus));
+    if (o.report.timed)
+        o.report.publish(replay_files_timed({o.path}, gpus));
+    else
+        o.report.publish(replay_files({o.path}, gpus));
 }
 
 }  // namespace
@@ -30,7 +33,8 @@ void add_replay(CLI::App& app) {
         "Examples:\n"
         "  raycache replay mj.rct --gpu gtx-980-ti\n"
         "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu");
+        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu\n"
+        "  raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed");
     command->callback([o] { run(*o); });
 }
 

@@ -58,9 +58,9 @@ GpuText find_text(const std::string& name_or_path) {
 
 }  // namespace
 
-Gpu load_gpu(const std::string& name_or_path) {
+Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes) {
     const GpuText text = find_text(name_or_path);
-    return parse_gpu(text.toml, text.file);
+    return parse_gpu(text.toml, text.file, changes);
 }
 
 std::vector<GpuValue> gpu_values(const std::string& name_or_path) {

@@ -83,10 +83,11 @@ struct Gpu {
     CacheGeometry& l1() { return levels.front(); }
 };
 
-/// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). Throws UsageError for an
-/// unknown name (listing the valid ones); Error "FILE:LINE: …" for unknown or missing keys, wrong types, impossible
-/// geometry.
-Gpu load_gpu(const std::string& name_or_path);
+/// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). `changes`: values that take
+/// the place of the file's, "KEY=VALUE" with a value in TOML, such as "l1.ways=64" or "timing.l1_port='banks'". Throws
+/// UsageError for an unknown name (listing the valid ones) or a change that is none; Error "FILE:LINE: …" for unknown
+/// or missing keys, wrong types, impossible geometry.
+Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes = {});
 
 struct GpuPreset {
     std::string name, description;

@@ -22,7 +22,11 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "triangle_instructions",
                                        "texel_instructions",
                                        "instruction_latency",
+                                       "instruction_interval",
                                        "dependent_chains",
+                                       "accesses_in_flight",
+                                       "load_queue",
+                                       "answers_per_cycle",
                                        "l1_port",
                                        "l1_banks",
                                        "tags_per_cycle",
@@ -90,7 +94,11 @@ Timing read_timing(TomlReader::Section section) {
     t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
     t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
     t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
+    t.instruction_interval = section.number_or("instruction_interval", t.instruction_interval);
     t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
+    t.accesses_in_flight = section.number_or("accesses_in_flight", t.accesses_in_flight);
+    t.load_queue = section.number_or("load_queue", t.load_queue);
+    t.answers_per_cycle = section.number_or("answers_per_cycle", t.answers_per_cycle, true);
     t.l1_port = section.choice_or("l1_port", l1_ports, t.l1_port);
     t.l1_banks = section.number_or("l1_banks", t.l1_banks);
     t.tags_per_cycle = section.number_or("tags_per_cycle", t.tags_per_cycle);
@@ -135,8 +143,9 @@ Gpu read(TomlReader& file) {
 
 }  // namespace
 
-Gpu parse_gpu(const std::string& toml, const std::string& file) {
+Gpu parse_gpu(const std::string& toml, const std::string& file, const std::vector<std::string>& changes) {
     TomlReader reader(toml, file);
+    for (const std::string& change : changes) reader.change(change);
     return read(reader);
 }
 

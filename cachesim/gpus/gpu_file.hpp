@@ -44,7 +44,8 @@
 namespace raycache::cachesim {
 
 /// `file` is named in errors: "FILE:LINE: KEY: expected …, found …; …".
-Gpu parse_gpu(const std::string& toml, const std::string& file);
+/// `changes`: see load_gpu().
+Gpu parse_gpu(const std::string& toml, const std::string& file, const std::vector<std::string>& changes = {});
 
 /// Every value with its source: see gpu_values().
 std::vector<GpuValue> parse_gpu_values(const std::string& toml, const std::string& file);

@@ -46,6 +46,31 @@ public:
         }
     }
 
+    /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". Throws UsageError
+    /// if that is no TOML.
+    void change(const std::string& assignment) {
+        toml::table given;
+        try {
+            given = toml::parse(assignment);
+        } catch (const toml::parse_error&) {
+        }
+        if (given.size() != 1)
+            throw UsageError(fmt::format("expected KEY=VALUE such as l1.ways=64 or l1.policy='fifo', found \"{}\"",
+                                         one_line(assignment)));
+        const std::string key(given.begin()->first.str());
+        const toml::node& value = given.begin()->second;
+        const toml::table* inner = value.as_table();
+        if (!inner) {
+            root_.insert_or_assign(key, value);
+            return;
+        }
+        toml::table* own = root_[key].as_table();
+        if (!own || inner->size() != 1)
+            throw UsageError(
+                fmt::format("{}: expected a key of a table of the file, found \"{}\"", file_, one_line(assignment)));
+        own->insert_or_assign(std::string(inner->begin()->first.str()), inner->begin()->second);
+    }
+
     /// A table of the file: the root, or one below it. Keys that are absent from `known` are errors.
     class Section {
     public:

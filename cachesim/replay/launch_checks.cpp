@@ -1,0 +1,84 @@
+#include "cachesim/replay/launch_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cachesim/gpus/limits.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::cachesim {
+
+const Gpu& checked(const Gpu& gpu) {
+    if (const auto problem = find_problem(gpu))
+        throw Error(fmt::format("GPU \"{}\": {}: {}", gpu.name, problem->key, problem->message));
+    return gpu;
+}
+
+std::vector<traces::Region> checked(const std::vector<traces::Region>& regions) {
+    if (regions.size() >= traces::ray_start)
+        throw Error(fmt::format("trace: expected at most {} regions, found {}; write the trace again",
+                                traces::ray_start - 1, regions.size()));
+    std::vector<traces::Region> copies;
+    for (const traces::Region& r : regions) {
+        if (static_cast<unsigned>(r.kind) >= traces::object_kinds)
+            throw Error(
+                fmt::format("region {} of the trace: expected an object kind of 0 to {}, found {}; write the "
+                            "trace again",
+                            copies.size(), traces::object_kinds - 1, static_cast<unsigned>(r.kind)));
+        copies.push_back({r.kind, r.base, r.element_size, r.stride, r.count, 0, {}});
+    }
+    return copies;
+}
+
+const Gpu& checked_timed(const Gpu& gpu) {
+    checked(gpu);
+    if (!gpu.timing)
+        throw Error(
+            fmt::format("GPU \"{}\": expected a table [timing] for a timed replay, found none; add one, or replay "
+                        "without time",
+                        gpu.name));
+    for (std::size_t level = 0; level < gpu.levels.size(); ++level)
+        if (const std::string& policy = gpu.levels[level].policy; policy != "lru" && policy != "fifo")
+            throw Error(
+                fmt::format("GPU \"{}\": l{}.policy: expected \"lru\" or \"fifo\" for a timed replay, found "
+                            "\"{}\"",
+                            gpu.name, level + 1, policy));
+    if (std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight > 64 * gpu.timing->schedulers)
+        throw Error(
+            fmt::format("GPU \"{}\": warps_per_sm: expected at most 64 for each of {} schedulers in a timed "
+                        "replay, found {}",
+                        gpu.name, gpu.timing->schedulers, gpu.warps_per_sm));
+    return gpu;
+}
+
+void check(const traces::WarpTrace& warp, const std::vector<traces::Region>& regions) {
+    const auto where = [&] { return fmt::format("launch {}, warp {} of the trace", warp.launch, warp.warp); };
+    std::size_t next = 0;
+    for (const traces::Record& record : warp.records) {
+        if (static_cast<unsigned>(record.ray) >= traces::ray_types)
+            throw Error(fmt::format("{}: expected a ray type of 0 to {}, found {}; write the trace again", where(),
+                                    traces::ray_types - 1, static_cast<unsigned>(record.ray)));
+        if (!record.is_access()) continue;
+        if (record.region >= regions.size())
+            throw Error(fmt::format("{}: expected a region below {}, found {}; write the trace again", where(),
+                                    regions.size(), record.region));
+        const unsigned lanes = record.lanes();
+        if (lanes == 0 || lanes > warp.elements.size() - next)
+            throw Error(
+                fmt::format("{}: expected an element for each of {} active lanes, found {}; write the trace "
+                            "again",
+                            where(), lanes, warp.elements.size() - next));
+        std::uint32_t largest = 0;
+        for (unsigned lane = 0; lane < lanes; ++lane) largest = std::max(largest, warp.elements[next + lane]);
+        if (largest >= regions[record.region].count)
+            throw Error(fmt::format("{}: expected elements of region {} below {}, found {}; write the trace again",
+                                    where(), record.region, regions[record.region].count, largest));
+        next += lanes;
+    }
+    if (next != warp.elements.size())
+        throw Error(fmt::format("{}: expected {} elements, one for each active lane, found {}; write the trace again",
+                                where(), next, warp.elements.size()));
+}
+
+}  // namespace raycache::cachesim

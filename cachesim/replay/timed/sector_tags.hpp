@@ -1,0 +1,139 @@
+// The tags of one sectored set-associative cache that knows when each of its sectors arrives.
+//
+// A sector is absent, or present with the cycle at which its data are there: in the past (a hit), in the future (on its
+// way), or not known yet. A line with a sector on its way is never evicted. Evicts the least recently used of the other
+// lines, or the one that came first (fifo).
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace raycache::cachesim {
+
+using Cycle = std::uint64_t;
+
+class SectorTags {
+public:
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
+    static constexpr Cycle unknown = ~Cycle{0};
+
+    /// All sets empty. sets * ways < 2^32 - 1; at most 32 sectors per line.
+    SectorTags(std::uint64_t sets, std::uint64_t ways, std::uint32_t sectors_per_line, bool fifo)
+        : ways_(ways),
+          sectors_(sectors_per_line),
+          fifo_(fifo),
+          shift_(64 - static_cast<int>(std::bit_width(std::bit_ceil(2 * sets * ways) - 1))),
+          lines_(sets * ways),
+          newest_(sets),
+          arrival_(sets * ways * sectors_per_line),
+          chains_(std::bit_ceil(2 * sets * ways), none) {
+        for (std::uint64_t set = 0; set < sets; ++set) {
+            newest_[set] = static_cast<std::uint32_t>(set * ways);
+            for (std::uint64_t way = 0; way < ways; ++way) {
+                lines_[set * ways + way].older = static_cast<std::uint32_t>(set * ways + (way + 1) % ways);
+                lines_[set * ways + way].newer = static_cast<std::uint32_t>(set * ways + (way + ways - 1) % ways);
+            }
+        }
+    }
+
+    /// The entry that holds the line, or none.
+    std::uint32_t find(std::uint64_t line) const {
+        std::uint32_t at = chains_[bucket(line)];
+        while (at != none && lines_[at].line != line) at = lines_[at].next;
+        return at;
+    }
+    bool holds(std::uint32_t entry, std::uint64_t line) const {
+        return lines_[entry].present != 0 && lines_[entry].line == line;
+    }
+
+    bool present(std::uint32_t entry, std::uint32_t sector) const { return lines_[entry].present >> sector & 1; }
+    Cycle arrival(std::uint32_t entry, std::uint32_t sector) const { return arrival_[entry * sectors_ + sector]; }
+
+    /// The line was looked up.
+    void use(std::uint32_t entry) {
+        if (!fifo_) make_newest(entry);
+    }
+
+    /// Takes in an absent sector, whose data arrive then.
+    void add(std::uint32_t entry, std::uint32_t sector, Cycle arrival) {
+        lines_[entry].present |= 1u << sector;
+        set_arrival(entry, sector, arrival);
+    }
+    void set_arrival(std::uint32_t entry, std::uint32_t sector, Cycle arrival) {
+        arrival_[entry * sectors_ + sector] = arrival;
+        Line& line = lines_[entry];
+        if (arrival >= line.last_arrival) {
+            line.last_arrival = arrival;
+            return;
+        }
+        line.last_arrival = 0;
+        for (std::uint32_t present = line.present; present; present &= present - 1)
+            line.last_arrival = std::max(
+                line.last_arrival, arrival_[entry * sectors_ + static_cast<std::uint32_t>(std::countr_zero(present))]);
+    }
+
+    /// Evicts a line of the set for this one, which is absent; its sectors are absent as yet. `none` if every line of
+    /// the set has a sector on its way.
+    std::uint32_t replace(std::uint64_t set, std::uint64_t line, Cycle now) {
+        const std::uint32_t oldest = lines_[newest_[set]].newer;
+        std::uint32_t victim = oldest;
+        while (lines_[victim].last_arrival > now) {
+            victim = lines_[victim].newer;
+            if (victim == oldest) return none;
+        }
+        Line& entry = lines_[victim];
+        if (entry.present) {
+            std::uint32_t* link = &chains_[bucket(entry.line)];
+            while (*link != victim) link = &lines_[*link].next;
+            *link = entry.next;
+        }
+        make_newest(victim, set);
+        entry.line = line;
+        entry.present = 0;
+        entry.last_arrival = 0;
+        std::uint32_t& chain = chains_[bucket(line)];
+        entry.next = chain;
+        chain = victim;
+        return victim;
+    }
+
+private:
+    struct Line {
+        std::uint64_t line = 0;
+        Cycle last_arrival = 0;              ///< of the sectors that are present
+        std::uint32_t present = 0;           ///< bit s: sector s
+        std::uint32_t older = 0, newer = 0;  ///< a ring of the set; the newest's `newer` is the oldest
+        std::uint32_t next = none;           ///< the chain of the bucket
+    };
+
+    /// Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
+    std::uint64_t bucket(std::uint64_t line) const { return (line * 0x9e3779b97f4a7c15ull) >> shift_; }
+
+    void make_newest(std::uint32_t entry) { make_newest(entry, entry / ways_); }
+    void make_newest(std::uint32_t entry, std::uint64_t set) {
+        std::uint32_t& newest = newest_[set];
+        if (entry == newest) return;
+        Line& line = lines_[entry];
+        lines_[line.newer].older = line.older;
+        lines_[line.older].newer = line.newer;
+        const std::uint32_t second = newest, oldest = lines_[second].newer;
+        line.older = second;
+        line.newer = oldest;
+        lines_[second].newer = entry;
+        lines_[oldest].older = entry;
+        newest = entry;
+    }
+
+    std::uint64_t ways_;
+    std::uint32_t sectors_;
+    bool fifo_;
+    int shift_;
+    std::vector<Line> lines_;
+    std::vector<std::uint32_t> newest_;  ///< of each set
+    std::vector<Cycle> arrival_;         ///< of each sector of each entry
+    std::vector<std::uint32_t> chains_;
+};
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,130 @@
+#include "cachesim/replay/timed/timed_replay.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+
+#include "cachesim/replay/launch_checks.hpp"
+#include "cachesim/replay/timed/timed_sm.hpp"
+
+namespace raycache::cachesim {
+
+struct TimedReplay::Impl {
+    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal)
+        : regions(checked(all_regions)), rules(checked_timed(gpu), regions, ideal), memory(gpu, ideal) {
+        total.sample = sample;
+        for (std::uint32_t sm = 0; sm < gpu.sms; ++sm) sms.emplace_back(rules, static_cast<std::uint16_t>(sm));
+        window = std::max<Cycle>(1, memory.shortest_answer());
+    }
+
+    void place_cta();
+    void run_window();
+    bool idle() const {
+        return memory.idle() && std::all_of(sms.begin(), sms.end(), [](const TimedSm& sm) { return sm.idle(); });
+    }
+
+    struct FreeSlot {
+        Cycle time;
+        std::size_t sm;
+        unsigned slot;
+        auto operator<=>(const FreeSlot&) const = default;
+    };
+
+    const std::vector<traces::Region> regions;
+    const TimedRules rules;
+    MemorySide memory;
+    std::deque<TimedSm> sms;
+    Cycle window = 1, now = 0;
+    std::vector<WarpPointer> cta;
+    std::uint64_t placed = 0;
+    std::vector<FreeSlot> free;  ///< earliest last
+    TimedStatistics total;
+};
+
+void TimedReplay::Impl::place_cta() {
+    const bool has_access =
+        std::any_of(cta.begin(), cta.end(), [](const WarpPointer& w) { return !w->elements.empty(); });
+    const std::uint64_t at_first = std::uint64_t{rules.cta_slots} * sms.size();
+    if (!has_access) {
+        for (const WarpPointer& warp : cta)
+            for (const traces::Record& record : warp->records)
+                if (!record.is_access()) total.rays += record.lanes();
+    } else if (placed < at_first) {
+        const std::uint64_t round = placed / sms.size();
+        sms[placed % sms.size()].place(static_cast<unsigned>(round), cta, round);
+        ++placed;
+    } else {
+        while (free.empty()) run_window();
+        const FreeSlot slot = free.back();
+        free.pop_back();
+        sms[slot.sm].place(slot.slot, cta, std::max(slot.time + 1, now));
+        ++placed;
+    }
+    cta.clear();
+}
+
+void TimedReplay::Impl::run_window() {
+    const Cycle end = now + window;
+    memory.run_replies(end, [this](const MemorySide::Reply& reply) { sms[reply.output].deliver(reply); });
+    for (std::size_t i = 0; i < sms.size(); ++i) {
+        TimedSm& sm = sms[i];
+        sm.run(end);
+        for (const MissRequest& miss : sm.misses) memory.request(miss);
+        sm.misses.clear();
+        for (const auto& [time, slot] : sm.freed) free.push_back({time, i, slot});
+        sm.freed.clear();
+    }
+    memory.run_requests(end);
+    std::sort(free.begin(), free.end(), std::greater<>());
+    now = end;
+}
+
+TimedReplay::TimedReplay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
+                         const Idealised& ideal)
+    : impl_(std::make_unique<Impl>(gpu, regions, sample, ideal)) {}
+TimedReplay::~TimedReplay() = default;
+TimedReplay::TimedReplay(TimedReplay&&) noexcept = default;
+
+void TimedReplay::push(std::shared_ptr<const traces::WarpTrace> warp) {
+    check(*warp, impl_->regions);
+    impl_->cta.push_back(std::move(warp));
+    if (impl_->cta.size() == impl_->rules.gpu.warps_per_cta) impl_->place_cta();
+}
+
+TimedStatistics TimedReplay::finish() {
+    Impl& i = *impl_;
+    if (!i.cta.empty()) i.place_cta();
+    while (!i.idle()) i.run_window();
+    TimedStatistics& t = i.total;
+    Cycle last = 0;
+    for (const TimedSm& sm : i.sms) {
+        const TimedStatistics& s = sm.statistics;
+        last = std::max(last, sm.last_end());
+        t.rays += s.rays;
+        t.warp_accesses += s.warp_accesses;
+        t.lane_accesses += s.lane_accesses;
+        t.instructions += s.instructions;
+        t.loads += s.loads;
+        t.l1.hits += s.l1.hits;
+        t.l1.merges += s.l1.merges;
+        t.l1.line_misses += s.l1.line_misses;
+        t.l1.sector_misses += s.l1.sector_misses;
+        t.visit_cycles += s.visit_cycles;
+        t.issue.busy += s.issue.busy;
+        t.l1_port.busy += s.l1_port.busy;
+    }
+    const Gpu& gpu = i.rules.gpu;
+    t.cycles = last + i.rules.timing.launch_cycles;
+    t.seconds = static_cast<double>(t.cycles) / (i.rules.timing.clock_mhz * 1e6);
+    t.l2 = i.memory.l2();
+    t.dram_sectors = i.memory.dram_sectors();
+    const auto asked = static_cast<double>(t.l2.requests());
+    t.issue.copies = std::uint64_t{gpu.sms} * i.rules.timing.schedulers;
+    t.l1_port.copies = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
+    t.crossbar = {asked * i.memory.crossbar_cycles_per_sector(), gpu.sms};
+    t.l2_slices = {asked * i.memory.slice_cycles_per_sector(), gpu.levels.back().slices};
+    t.dram = {static_cast<double>(t.dram_sectors) * i.memory.dram_cycles_per_sector(), i.rules.timing.dram_channels};
+    return t;
+}
+
+}  // namespace raycache::cachesim

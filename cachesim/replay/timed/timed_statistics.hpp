@@ -1,0 +1,44 @@
+// What a timed replay counts: plain numbers, added up by anyone, formatted elsewhere.
+#pragma once
+
+#include <cstdint>
+
+namespace raycache::cachesim {
+
+/// Answers of one level to sector requests. A request for a sector on its way is a merge: a hit by one convention
+/// (functional replays), no hit by the other (GPGPU-Sim: HIT_RESERVED).
+struct LevelAnswers {
+    std::uint64_t hits = 0;
+    std::uint64_t merges = 0;
+    std::uint64_t line_misses = 0;    ///< the line was absent
+    std::uint64_t sector_misses = 0;  ///< the line was there, the sector was not
+
+    std::uint64_t requests() const { return hits + merges + line_misses + sector_misses; }
+    std::uint64_t misses() const { return line_misses + sector_misses; }
+    bool operator==(const LevelAnswers&) const = default;
+};
+
+struct TimedStatistics {
+    std::uint32_t sample = 0;  ///< first sample index of the launch
+    std::uint64_t cycles = 0;  ///< of the SM clock, from the launch to the end of the last warp
+    double seconds = 0;        ///< cycles / clock
+    std::uint64_t rays = 0;
+    std::uint64_t warp_accesses = 0, lane_accesses = 0;
+    std::uint64_t instructions = 0;  ///< warp instructions: loads, and those between accesses
+    std::uint64_t loads = 0;         ///< load instructions of warps
+    LevelAnswers l1, l2;
+    std::uint64_t dram_sectors = 0;
+
+    /// Busy cycles of each resource, summed over its copies, and how many copies there are: utilisation =
+    /// busy / (copies * cycles).
+    struct Resource {
+        double busy = 0;
+        std::uint64_t copies = 1;
+    };
+    Resource issue, l1_port, crossbar, l2_slices, dram;
+
+    std::uint64_t visit_cycles =
+        0;  ///< from the issue of a visit's first load to its last data, summed over warp accesses
+};
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,93 @@
+// One visit of a warp as the load instructions and sector requests that a compiler and a front end make of it.
+//
+// An object is read by loads of load_bytes at a time, all lanes together: load k reads bytes [k * load_bytes, …) of
+// every lane's object. The lanes of a load go to the tag stage in groups (FrontEnd::lanes_per_request_*); lanes of one
+// group that read the same sector share one request.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "traces/header.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+/// How the objects of one region are loaded.
+struct LoadShape {
+    LoadShape(const traces::Region& region, const FrontEnd& front_end, std::uint32_t sector_bytes)
+        : base(region.base),
+          stride(region.stride),
+          load_bytes(std::min(front_end.load_bytes, std::bit_ceil(region.element_size))),
+          loads((region.element_size + load_bytes - 1) / load_bytes),
+          last_bytes(region.element_size - (loads - 1) * load_bytes),
+          lanes_per_request(load_bytes >= 16  ? front_end.lanes_per_request_16
+                            : load_bytes >= 8 ? front_end.lanes_per_request_8
+                                              : front_end.lanes_per_request_4),
+          sector_shift(std::countr_zero(sector_bytes)) {}
+
+    std::uint64_t base, stride;
+    std::uint32_t load_bytes, loads, last_bytes;  ///< last_bytes: what the last load reads
+    std::uint32_t lanes_per_request;
+    int sector_shift;
+
+    /// First and last sector that load k of this element reads.
+    std::uint64_t first_sector(std::uint32_t element, std::uint32_t k) const {
+        return (base + element * stride + std::uint64_t{k} * load_bytes) >> sector_shift;
+    }
+    std::uint64_t last_sector(std::uint32_t element, std::uint32_t k) const {
+        const std::uint32_t bytes = k + 1 == loads ? last_bytes : load_bytes;
+        return (base + element * stride + std::uint64_t{k} * load_bytes + bytes - 1) >> sector_shift;
+    }
+};
+
+/// The distinct elements that each group of lanes reads, in descending order.
+class Visit {
+public:
+    void begin(const LoadShape& shape, std::uint32_t mask, const std::uint32_t* elements) {
+        count_ = 0;
+        ends_ = 0;
+        if (shape.lanes_per_request == traces::warp_lanes) {
+            add_group(elements, static_cast<unsigned>(std::popcount(mask)));
+            return;
+        }
+        for (unsigned lane = 0; lane < traces::warp_lanes; lane += shape.lanes_per_request) {
+            const std::uint32_t group = mask >> lane & ((1u << shape.lanes_per_request) - 1);
+            if (!group) continue;
+            const auto lanes = static_cast<unsigned>(std::popcount(group));
+            add_group(elements, lanes);
+            elements += lanes;
+        }
+    }
+
+    unsigned count() const { return count_; }
+    std::uint32_t operator[](unsigned i) const { return elements_[i]; }
+    /// Whether element i is the last of its group.
+    bool ends_group(unsigned i) const { return ends_ >> i & 1; }
+
+private:
+    void add_group(const std::uint32_t* elements, unsigned lanes) {
+        std::uint32_t* const out = &elements_[count_];
+        unsigned n = 0;
+        for (unsigned lane = 0; lane < lanes; ++lane) {  // insertion: few elements, mostly in order or equal
+            const std::uint32_t element = elements[lane];
+            unsigned at = n;
+            while (at > 0 && out[at - 1] < element) --at;
+            if (at > 0 && out[at - 1] == element) continue;
+            for (unsigned i = n; i > at; --i) out[i] = out[i - 1];
+            out[at] = element;
+            ++n;
+        }
+        count_ += n;
+        ends_ |= 1u << (count_ - 1);
+    }
+
+    std::array<std::uint32_t, traces::warp_lanes> elements_{};
+    unsigned count_ = 0;
+    std::uint32_t ends_ = 0;
+};
+
+}  // namespace raycache::cachesim

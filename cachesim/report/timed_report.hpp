@@ -1,0 +1,45 @@
+// From timed replays to findings: cycles, what binds them, and the predicted speed-up against a baseline.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cachesim/replay/timed/timed_statistics.hpp"
+#include "cachesim/report/report.hpp"
+
+namespace raycache::cachesim {
+
+/// All launches of one strategy on one GPU.
+struct TimedSeries {
+    std::string scene, strategy, sequence, parameters, thread_map, gpu;
+    std::uint64_t spp = 0;
+    std::uint32_t sector_bytes = 32;
+    std::vector<TimedStatistics> launches;  ///< one per sample index, ascending
+};
+
+struct TimedRow {
+    TimedSeries series;
+    TimedStatistics totals;       ///< sums over all launches
+    std::string bottleneck;       ///< the resource in use most of the time, or "latency" if none is half of it
+    double bottleneck_share = 0;  ///< of its time
+    Estimate cycles_per_ray;
+    /// The baseline's cycles over this row's; over the same scene, sequence, N, thread map and GPU.
+    std::optional<Estimate> speed_up;
+};
+
+struct TimedReport {
+    std::string baseline;
+    std::vector<TimedRow> rows;
+    std::vector<std::string> notes;
+};
+
+/// Throws UsageError if `baseline` was given by the user but is in no series.
+TimedReport make_timed_report(const std::vector<TimedSeries>&, const std::string& baseline);
+
+std::string to_text(const TimedReport&);
+std::string to_json(const TimedReport&);
+std::string to_csv(const TimedReport&);
+
+}  // namespace raycache::cachesim
