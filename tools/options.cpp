@@ -213,12 +213,14 @@ void ReportOptions::check(const std::vector<cachesim::Gpu>& loaded) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
     if (!counters.empty() && (json || csv))
         throw UsageError("--counters with --json or --csv; expected it alone (--save PREFIX writes the other formats)");
+    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
+    if (timed && by != "none")
+        throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
     for (const cachesim::Gpu& gpu : loaded)
         if (!counters.empty() && gpu.levels.size() != 2)
             throw UsageError(
                 fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}", gpu.name,
                             gpu.levels.size()));
-    if (!counters.empty() && timed) throw UsageError("--counters with --timed; expected one of them");
     parse_by(by);
 }
 
@@ -234,27 +236,30 @@ std::string baseline_of(const std::vector<Series>& series, const std::string& as
     return asked.empty() && has_usual ? usual : asked;
 }
 
-/// `shown`: what is printed unless JSON or CSV is asked for.
 template <class Report>
-void publish_report(const Report& report, const ReportOptions& o, const std::string& shown) {
+void publish_report(const Report& report, const ReportOptions& o) {
     if (!o.save.empty()) {
         save_text(o.save + ".txt", cachesim::to_text(report));
         save_text(o.save + ".json", cachesim::to_json(report));
         save_text(o.save + ".csv", cachesim::to_csv(report));
     }
-    print(o.json ? cachesim::to_json(report) : o.csv ? cachesim::to_csv(report) : shown);
+    if constexpr (requires { cachesim::to_profiler_text(report); }) {
+        if (!o.counters.empty()) {
+            print(cachesim::to_profiler_text(report));
+            return;
+        }
+    }
+    print(o.json ? cachesim::to_json(report) : o.csv ? cachesim::to_csv(report) : cachesim::to_text(report));
 }
 
 }  // namespace
 
 void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
-    const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
-    publish_report(report, *this, counters.empty() ? cachesim::to_text(report) : cachesim::to_profiler_text(report));
+    publish_report(cachesim::make_report(series, baseline_of(series, baseline), parse_by(by)), *this);
 }
 
 void ReportOptions::publish(const std::vector<cachesim::TimedSeries>& series) const {
-    const auto report = cachesim::make_timed_report(series, baseline_of(series, baseline));
-    publish_report(report, *this, cachesim::to_text(report));
+    publish_report(cachesim::make_timed_report(series, baseline_of(series, baseline)), *this);
 }
 
 void ThreadOptions::add(CLI::App& app) {

@@ -47,6 +47,7 @@ std::vector<Series> replay(const std::vector<Source>& sources, const std::vector
             made.thread_map = p.thread_map;
             made.gpu = gpu.name;
             made.sector_bytes = gpu.l1().sector_bytes;
+            if constexpr (requires { made.levels; }) made.levels = gpu.levels.size();
             made.spp = p.spp;
             made.launches.resize(header.launches.size());
         }
@@ -77,12 +78,10 @@ std::vector<Series> replay(const std::vector<Source>& sources, const std::vector
 
 std::vector<cachesim::Series> replay_functional(const std::vector<Source>& sources,
                                                 const std::vector<cachesim::Gpu>& gpus) {
-    auto series = replay<cachesim::Series>(
+    return replay<cachesim::Series>(
         sources, gpus, [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::Replay(gpu, regions, sample);
         });
-    for (std::size_t i = 0; i < series.size(); ++i) series[i].levels = gpus[i % gpus.size()].levels.size();
-    return series;
 }
 
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<Source>& sources,

@@ -171,9 +171,9 @@ void TimedSm::issue(unsigned number, Cycle time) {
     l1s_[chosen / per_warp_ % l1s_.size()].queue.push_back({time, chosen});
 }
 
-/// Looks up one sector; false if the L1 has no room for another miss.
+/// Looks up one sector; false if the L1 has no room for another miss. `entry` is where its line was last, or 0.
 bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, std::uint64_t sector_number,
-                      Cycle time) {
+                      std::uint32_t& entry, Cycle time) {
     Flight& flight = flights_[flight_number];
     LevelAnswers& answers = statistics.l1;
     flight.arrival = std::max(flight.arrival, time);
@@ -183,7 +183,7 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, 
     }
     const std::uint64_t line = sector_number >> rules_.line_of_sector;
     const auto sector = static_cast<std::uint32_t>(sector_number & (rules_.sectors_per_line - 1));
-    std::uint32_t entry = l1.tags.find(line);
+    if (!l1.tags.holds(entry, line)) entry = l1.tags.find(line);
     const bool line_there = entry != SectorTags::none;
     std::size_t place = std::size_t{entry} * rules_.sectors_per_line + sector;
     const auto wait_here = [&] {
@@ -199,12 +199,12 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, 
         ++flight.unresolved;
     };
     if (line_there && l1.tags.present(entry, sector)) {
-        const Cycle arrival = l1.tags.arrival(entry, sector);
-        if (arrival <= time) {
+        if (l1.tags.arrived(entry, sector, time)) {
             l1.tags.use(entry);
             ++answers.hits;
             return true;
         }
+        const Cycle arrival = l1.tags.arrival(entry, sector);
         if (l1.merges[place] >= rules_.timing.l1_mshr_merges) return false;
         l1.tags.use(entry);
         ++l1.merges[place];
@@ -216,10 +216,16 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, 
         return true;
     }
     for (; !l1.arrivals.empty() && l1.arrivals.front() <= time; l1.arrivals.pop()) --l1.under_way;
-    if (l1.under_way >= rules_.timing.l1_mshrs) return false;
+    if (l1.under_way >= rules_.timing.l1_mshrs) {
+        if (!line_there) entry = 0;
+        return false;
+    }
     if (!line_there) {
         entry = l1.tags.replace(rules_.l1_map(line), line, time);
-        if (entry == SectorTags::none) return false;
+        if (entry == SectorTags::none) {
+            entry = 0;
+            return false;
+        }
         place = std::size_t{entry} * rules_.sectors_per_line + sector;
         ++answers.line_misses;
     } else {
@@ -269,7 +275,7 @@ Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
                 used = tags = 0;
             }
             if (time >= end) return end;
-            if (!look_up(l1, number, load.flight, sector, time)) {
+            if (!look_up(l1, number, load.flight, sector, flight.entries[l1.position], time)) {
                 const Cycle retry = l1.arrivals.empty() ? end : std::max(time + 1, l1.arrivals.front());
                 return std::min(retry, end);
             }

@@ -80,6 +80,8 @@ private:
     /// warp's next access when it is done.
     struct Flight {
         Visit visit;
+        /// By position in the visit (serve_port()): where the L1 held the sector that an earlier load looked up there.
+        std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
         const LoadShape* shape = nullptr;
         std::uint32_t issued = 0;      ///< loads of the visit
         std::uint32_t at_port = 0;     ///< loads of the visit that have passed the port
@@ -137,7 +139,7 @@ private:
     void issue(unsigned scheduler, Cycle);
     unsigned pick(const Scheduler&, unsigned number) const;
     Cycle serve_port(L1&, std::uint8_t number, Cycle, Cycle end);
-    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint64_t sector, Cycle);
+    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint64_t sector, std::uint32_t& entry, Cycle);
     void visit_done(std::uint32_t flight);
 
     const TimedRules& rules_;
