@@ -16,11 +16,15 @@ std::uint32_t group_of(std::uint32_t mask, unsigned first, unsigned count) {
 }
 
 unsigned distinct_of(const std::uint32_t* elements, unsigned count) {
+    std::uint64_t low_bits = 0;  // bit b: an element with these six low bits has come
     unsigned distinct = 0;
     for (unsigned i = 0; i < count; ++i) {
-        bool seen = false;
-        for (unsigned j = 0; j < i; ++j) seen |= elements[j] == elements[i];
-        distinct += !seen;
+        const std::uint64_t bit = std::uint64_t{1} << (elements[i] & 63);
+        unsigned first = i;
+        if (low_bits & bit)
+            for (first = 0; elements[first] != elements[i];) ++first;
+        distinct += first == i;
+        low_bits |= bit;
     }
     return distinct;
 }
