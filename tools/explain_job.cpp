@@ -67,7 +67,8 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
     add(a.sequence, b.sequence);
     add(fmt::format("N={}", a.spp), fmt::format("N={}", b.spp));
     add(a.layout, b.layout);
-    return names[0].empty() || names[1].empty() ? request.names : names;
+    if (names[0].empty() || names[1].empty()) return {"base", "other"};
+    return names;
 }
 
 }  // namespace

@@ -9,11 +9,6 @@ namespace {
 
 unsigned index_bits(std::uint64_t count) { return std::max(1u, static_cast<unsigned>(std::bit_width(count - 1))); }
 
-std::uint64_t fold(std::uint64_t value, unsigned k) {
-    for (unsigned shift = k; shift < 64; shift *= 2) value ^= value >> shift;
-    return value;
-}
-
 /// The bits of `value` that `mask` lacks, moved together.
 std::uint64_t without_bits(std::uint64_t value, std::uint64_t mask) {
     std::uint64_t result = 0;
@@ -53,7 +48,17 @@ LineMap::LineMap(const CacheGeometry& geometry)
       line_shift_(std::countr_zero(geometry.line_bytes)) {
     for (const std::uint32_t bit : geometry.slice_bits)
         slice_bit_mask_ |= std::uint64_t{1} << (bit - static_cast<unsigned>(line_shift_));
-    if (!is_linear(geometry)) return;
+    const bool hashed_slices = geometry.slices == 1 || geometry.slice_hash != SliceHash::ipoly;
+    if (geometry.index == SetIndex::xor_fold) set_fold_ = index_bits(sets_);
+    if (geometry.slices > 1 && hashed_slices) {
+        interleave_shift_ = std::countr_zero(geometry.interleave_bytes) - line_shift_;
+        if (geometry.slice_hash == SliceHash::xor_fold) slice_fold_ = index_bits(geometry.slices);
+    }
+    if (!is_linear(geometry)) {
+        if (hashed_slices && (geometry.index == SetIndex::modulo || geometry.index == SetIndex::xor_fold))
+            form_ = Form::hashed;
+        return;
+    }
     if (geometry.slices == 1 && geometry.index == SetIndex::modulo) {
         form_ = Form::low_bits;
         return;

@@ -56,6 +56,12 @@ public:
                 }
                 return all;
             }
+            case Form::hashed: {
+                const auto [quotient, slice] = by_slices_(fold(line >> interleave_shift_, slice_fold_));
+                const std::uint64_t in_piece = line & ((std::uint64_t{1} << interleave_shift_) - 1);
+                const std::uint64_t line_in_slice = quotient << interleave_shift_ | in_piece;
+                return slice * sets_ + by_sets_(fold(line_in_slice, set_fold_)).rest;
+            }
             case Form::general:
                 break;
         }
@@ -68,16 +74,23 @@ public:
 private:
     enum class Form {
         low_bits,  ///< one slice, linear sets
+        hashed,    ///< modulo and xor_fold only, any numbers of slices and sets
         linear,    ///< slice and set are exclusive-ors of bits of the line: tables_ holds those of each of its bytes
         general
     };
 
+    /// value xor (value >> k) xor (value >> 2k) xor …; k = 64: the value.
+    static std::uint64_t fold(std::uint64_t value, unsigned k) {
+        for (unsigned shift = k; shift < 64; shift *= 2) value ^= value >> shift;
+        return value;
+    }
     std::uint64_t set(std::uint64_t line, std::uint64_t line_in_slice) const;
 
     CacheGeometry geometry_;
     std::uint64_t sets_;
     Divider by_sets_, by_slices_;
-    int line_shift_;
+    int line_shift_, interleave_shift_ = 0;
+    unsigned slice_fold_ = 64, set_fold_ = 64;
     std::uint64_t slice_bit_mask_ = 0;  ///< ipoly: slice_bits, as bits of the line number
     Form form_ = Form::general;
     std::vector<std::array<std::uint32_t, 256>> tables_;

@@ -32,7 +32,7 @@ struct Timing {
     std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
     std::uint32_t instruction_latency = 4;
     std::uint32_t instruction_interval = 1;  ///< cycles from one of them to the next of the same scheduler
-    std::uint32_t dependent_chains = 4;  ///< instructions of a visit that may be under way at once
+    std::uint32_t dependent_chains = 4;      ///< instructions of a visit that may be under way at once
 
     /// Visits of a warp that may be under way at once. Traversal needs what one visit brings for the next: 1.
     std::uint32_t accesses_in_flight = 1;

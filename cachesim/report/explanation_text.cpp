@@ -52,6 +52,26 @@ private:
     std::uint64_t base_rays_, other_rays_;
 };
 
+/// Breaks lines between words.
+std::string wrapped(const std::string& text) {
+    std::string out;
+    std::size_t line = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        if (line != 0 && line + 1 + (end - at) > columns) {
+            out += '\n';
+            line = 0;
+        } else if (line != 0) {
+            out += ' ';
+            ++line;
+        }
+        out += text.substr(at, end - at);
+        line += end - at;
+        at = end + 1;
+    }
+    return out + '\n';
+}
+
 std::string identity_table(const Explanation& e) {
     const Counters base = e.base.totals(), other = e.other.totals();
     TextTable table;
@@ -137,10 +157,11 @@ std::string class_table(const Explanation& e) {
         row("  conflict", base.conflict, other.conflict, true);
         row("lucky hits", base.lucky_hits, other.lucky_hits, false);
     }
-    return "\nMisses by class\n\n" + table.text() +
-           "\ncompulsory: the cache had never held the sector; capacity: a fully associative LRU cache of as many "
-           "lines lacks it\ntoo; conflict: that cache would have had it; lucky: a hit where that cache would have "
-           "missed. Classes in % of the\nmisses, the rest in % of the look-ups.\n";
+    return "\nMisses by class\n\n" + table.text() + '\n' +
+           wrapped(
+               "compulsory: the cache had never held the sector; capacity: a fully associative LRU cache of as "
+               "many lines lacks it too; conflict: that cache would have had it; lucky: a hit where that cache "
+               "would have missed. Classes in % of the misses, the rest in % of the look-ups.");
 }
 
 /// Where the misses are, one group of rows after the other.
@@ -201,26 +222,6 @@ std::string sharing_table(const Explanation& e) {
     row("another warp of the CTA", base.same_cta, other.same_cta);
     row("another CTA", base.other_cta, other.other_cta);
     return "\nSharing: to whom L1 hits are owed, sectors per ray\n\n" + table.text();
-}
-
-/// Breaks lines between words.
-std::string wrapped(const std::string& text) {
-    std::string out;
-    std::size_t line = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        if (line != 0 && line + 1 + (end - at) > columns) {
-            out += '\n';
-            line = 0;
-        } else if (line != 0) {
-            out += ' ';
-            ++line;
-        }
-        out += text.substr(at, end - at);
-        line += end - at;
-        at = end + 1;
-    }
-    return out + '\n';
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::string waterfall(const std::vector<WaterfallStep>& steps, std::size_t colum
     Line axis(cells);
     const std::string low_label = fmt::format("x{:.2f}", low), high_label = fmt::format("x{:.2f}", high);
     if (cell(1) > low_label.size()) axis.write(0, low_label);
-    if (cell(1) + 3 + high_label.size() < cells) axis.write(cells - high_label.size(), high_label);
+    if (high > 1 + 1e-9 && cell(1) + 3 + high_label.size() < cells) axis.write(cells - high_label.size(), high_label);
     axis.write(std::min(cell(1), cells - 2), "x1");
     std::string text = std::string(left, ' ') + axis.text() + '\n';
 

@@ -156,3 +156,27 @@ TEST_CASE("tone mapping is monotonic, keeps black, and survives every float") {
     }
     CHECK(previous >= 254);
 }
+
+TEST_CASE("a screen image is written as it is") {
+    const TempFolder folder;
+    ScreenImage image{3, 2, {}};
+    for (std::uint8_t i = 0; i < 6; ++i) image.pixels.push_back({i, static_cast<std::uint8_t>(40 * i), 255});
+    write_screen_image(folder.file("a.png"), image);
+    const Texture texture = decode_image(bytes_of_file(folder.file("a.png")), "a");
+    REQUIRE(texture.width == 3);
+    for (std::size_t i = 0; i < 6; ++i)
+        for (std::size_t c = 0; c < 3; ++c) CHECK(texture.rgba[4 * i + c] == image.pixels[i][c]);
+    CHECK_THROWS_AS(write_screen_image(folder.file("b.png"), ScreenImage{}), Error);
+}
+
+TEST_CASE("named channels are written with their names, the same bytes each time") {
+    const TempFolder folder;
+    const std::vector<Channel> channels{{"base.L1 miss rate", {0, 0.25F, 1, 2}}, {"other.active lanes", {1, 2, 3, 4}}};
+    write_channels(folder.file("a.exr"), 2, 2, channels);
+    const auto bytes = bytes_of_file(folder.file("a.exr"));
+    const std::string text(bytes.begin(), bytes.end());
+    for (const Channel& channel : channels) CHECK(text.find(channel.name + '\0') != std::string::npos);
+    write_channels(folder.file("a.exr"), 2, 2, channels);
+    CHECK(bytes_of_file(folder.file("a.exr")) == bytes);
+    CHECK_THROWS_AS(write_channels(folder.file("b.exr"), 3, 2, channels), Error);
+}
