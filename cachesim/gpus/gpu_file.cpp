@@ -31,7 +31,6 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "l1_banks",
                                        "tags_per_cycle",
                                        "l1_bytes_per_cycle",
-                                       "allocate",
                                        "l1_latency",
                                        "l2_latency",
                                        "l2_far_latency",
@@ -55,7 +54,6 @@ constexpr Choice<SliceHash> slice_hashes[] = {
 constexpr Choice<Scheduler> schedulers[] = {{"loose_round_robin", Scheduler::loose_round_robin},
                                             {"greedy_then_oldest", Scheduler::greedy_then_oldest}};
 constexpr Choice<L1Port> l1_ports[] = {{"tags", L1Port::tags}, {"banks", L1Port::banks}};
-constexpr Choice<Allocate> allocations[] = {{"on_miss", Allocate::on_miss}, {"on_fill", Allocate::on_fill}};
 
 CacheGeometry read_cache(TomlReader::Section section) {
     CacheGeometry cache;
@@ -103,7 +101,6 @@ Timing read_timing(TomlReader::Section section) {
     t.l1_banks = section.number_or("l1_banks", t.l1_banks);
     t.tags_per_cycle = section.number_or("tags_per_cycle", t.tags_per_cycle);
     t.l1_bytes_per_cycle = section.positive_or("l1_bytes_per_cycle", t.l1_bytes_per_cycle);
-    t.allocate = section.choice_or("allocate", allocations, t.allocate);
     t.l1_latency = section.number<std::uint32_t>("l1_latency", true);
     t.l2_latency = section.number<std::uint32_t>("l2_latency", true);
     t.l2_far_latency = section.number_or("l2_far_latency", t.l2_latency, true);

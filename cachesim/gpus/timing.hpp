@@ -18,9 +18,6 @@ enum class L1Port {
     banks,
 };
 
-/// When a line of L1 is given up for one that is fetched.
-enum class Allocate { on_miss, on_fill };
-
 struct Timing {
     double clock_mhz = 0;
     std::uint32_t launch_cycles = 0;  ///< from the launch to the first instruction
@@ -44,7 +41,6 @@ struct Timing {
     std::uint32_t l1_banks = 4;
     std::uint32_t tags_per_cycle = 4;
     double l1_bytes_per_cycle = 128;
-    Allocate allocate = Allocate::on_miss;
     std::uint32_t l1_latency = 0, l2_latency = 0, l2_far_latency = 0, dram_latency = 0;  ///< cycles
     std::uint32_t l2_partitions = 1;  ///< an SM reaches its own after l2_latency, the others after l2_far_latency
     std::uint32_t l1_mshrs = 0, l1_mshr_merges = 0;  ///< sectors under way, and look-ups that may wait for each

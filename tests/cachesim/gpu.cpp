@@ -225,3 +225,52 @@ TEST_CASE("a user's GPU file is read from a path") {
     CHECK(load_gpu(path.string()).name == "tiny");
     std::filesystem::remove(path);
 }
+
+TEST_CASE("a [timing] that contradicts itself is refused with line and key") {
+    const std::string timing = R"(
+[timing]
+clock_mhz = 1000
+schedulers = 4
+node_instructions = 10
+triangle_instructions = 10
+texel_instructions = 10
+instruction_latency = 4
+l1_latency = 30
+l2_latency = 200
+dram_latency = 500
+l1_mshrs = 256
+l1_mshr_merges = 8
+l2_mshrs = 192
+l2_mshr_merges = 4
+crossbar_bytes_per_cycle = 32
+l2_bytes_per_cycle = 32
+dram_channels = 4
+dram_gb_s = 256
+)";
+    const auto message = [&](const std::string& from, const std::string& to) -> std::string {
+        std::string text = timing;
+        const auto at = text.find(from);
+        REQUIRE(at != std::string::npos);
+        text.replace(at, from.size(), to);
+        try {
+            parse_gpu(good + text, "f.toml");
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return "accepted";
+    };
+    const Gpu gpu = parse_gpu(good + timing, "f.toml");
+    REQUIRE(gpu.timing);
+    CHECK(gpu.timing->l2_latency == 200);
+    CHECK(gpu.timing->l2_far_latency == 200);  // no far partition
+    CHECK(gpu.timing->dram_gb_s == 256);
+    using Catch::Contains;
+    CHECK_THAT(message("l2_latency = 200", "l2_latency = 20"), Contains("timing.l2_latency") && Contains("20"));
+    CHECK_THAT(message("dram_latency = 500", "dram_latency = -5"), Contains("timing.dram_latency") && Contains("-5"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 0"), Contains("timing.dram_gb_s") && Contains("positive"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = \"fast\""), Contains("timing.dram_gb_s") && Contains("string"));
+    CHECK_THAT(message("schedulers = 4", "schedulers = 0"), Contains("timing.schedulers"));
+    CHECK_THAT(message("schedulers = 4", ""), Contains("timing.schedulers") && Contains("add it"));
+    CHECK_THAT(message("schedulers = 4", "sheduler = 4"), Contains("timing.sheduler") && Contains("unknown"));
+    CHECK_THAT(message("l1_mshrs = 256", "l1_mshrs = 0"), Contains("timing.l1_mshrs"));
+}
