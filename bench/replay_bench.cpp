@@ -7,6 +7,7 @@
 
 #include "bench/workload.hpp"
 #include "cachesim/replay/replay.hpp"
+#include "cachesim/replay/timed/timed_replay.hpp"
 #include "traces/reader.hpp"
 
 namespace raycache::bench {
@@ -80,6 +81,28 @@ void replay(benchmark::State& state, const char* gpu_name, bool decoded) {
     }
 }
 
+/// Warps from memory.
+void timed_replay(benchmark::State& state, const char* gpu_name) {
+    const traces::Reader reader(trace_file().path());
+    const cachesim::Gpu gpu = cachesim::load_gpu(gpu_name);
+    std::vector<std::shared_ptr<const traces::WarpTrace>> all;
+    std::vector<traces::WarpTrace> warps;
+    for (std::size_t b = 0; b < reader.blocks().size(); ++b) {
+        reader.read_block(b, warps);
+        for (traces::WarpTrace& w : warps) all.push_back(std::make_shared<const traces::WarpTrace>(std::move(w)));
+    }
+    for (auto _ : state) {
+        const double start = thread_seconds();
+        cachesim::TimedReplay model(gpu, reader.header().regions, reader.header().launches.front());
+        for (const auto& warp : all) model.push(warp);
+        const cachesim::TimedStatistics counts = model.finish();
+        const double seconds = thread_seconds() - start;
+        report_rate(state, counts.lane_accesses, seconds);
+        state.counters["Mwarp_accesses_per_s"] = static_cast<double>(counts.warp_accesses) / seconds / 1e6;
+        state.counters["Mwarp_instructions_per_s"] = static_cast<double>(counts.instructions) / seconds / 1e6;
+    }
+}
+
 BENCHMARK(decode)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay, gtx_980_ti, "gtx-980-ti", true)
     ->Iterations(1)
@@ -90,6 +113,12 @@ BENCHMARK_CAPTURE(replay, gtx_980_ti_from_file, "gtx-980-ti", false)
     ->Iterations(1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, rtx_3070, "rtx-3070", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(timed_replay, gtx_980_ti, "gtx-980-ti")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(timed_replay, rtx_3070, "rtx-3070")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace raycache::bench

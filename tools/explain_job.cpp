@@ -9,6 +9,7 @@
 
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
+#include "cachesim/replay/timed/timed_replay.hpp"
 #include "tools/console.hpp"
 #include "tools/heat_map.hpp"
 #include "traces/error.hpp"
@@ -74,6 +75,9 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
 
 Explained explain(const ExplainRequest& request) {
     check_comparable(request);
+    if (request.gpu.levels.size() != 2)
+        throw UsageError(fmt::format("--gpu {}; expected a GPU of two levels of caches to explain, found {}",
+                                     request.gpu.name, request.gpu.levels.size()));
     const auto names = names_of(request);
     const cachesim::Gpu& gpu = request.gpu;
     const Header& first = *request.sources[0]->header;
@@ -95,6 +99,9 @@ Explained explain(const ExplainRequest& request) {
         traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
+    if (gpu.timing)
+        for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
+            explanation.speed_ups.push_back({ideal, {}, {}});
 
     ProgressBar bar("explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
     std::mutex mutex;
@@ -105,14 +112,23 @@ Explained explain(const ExplainRequest& request) {
         cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
         cachesim::Explainer explainer(gpu, header.regions, *depths[t], request.pixels ? &pixels[t] : nullptr);
         replay.observe(explainer);
+        std::vector<cachesim::TimedReplay> timed;
+        for (const cachesim::SpeedUp& s : explanation.speed_ups)
+            timed.emplace_back(gpu, header.regions, header.launches[launch], s.replay.ideal);
         request.sources[t]->deliver(launch, [&](traces::WarpTrace&& warp) {
             const std::uint64_t rays = count_rays(warp);
-            replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
+            const auto shared = std::make_shared<const traces::WarpTrace>(std::move(warp));
+            replay.push(shared);
+            for (cachesim::TimedReplay& r : timed) r.push(shared);
             bar.add(1, rays);
         });
         traces[t]->launches[launch] = replay.finish();
+        std::vector<cachesim::TimedStatistics> times;
+        for (cachesim::TimedReplay& r : timed) times.push_back(r.finish());
         const std::lock_guard lock(mutex);  // sums of whole numbers: in any order the same
         traces[t]->findings += explainer.findings();
+        for (std::size_t i = 0; i < times.size(); ++i)
+            (t == 0 ? explanation.speed_ups[i].base : explanation.speed_ups[i].other) += times[i];
         if (request.pixels) done.costs[t] += explainer.pixel_costs();
     };
     // Each launch begins with cold caches, so launches are independent: one thread each.

@@ -45,15 +45,23 @@ void check_launch(const Options& o, const traces::Header& header) {
 /// Which cache, or UsageError.
 cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gpu& gpu,
                                             const cachesim::SectorFormat& format) {
-    if (o.level != "l1" && o.level != "l2")
-        throw UsageError(fmt::format("--level '{}'; expected one of: l1, l2", o.level));
-    if (o.level == "l2") {
-        if (o.sm || o.l1) throw UsageError("--sm or --l1 with --level l2; expected neither: all SMs share L2");
-        return {};
+    const std::size_t levels = gpu.levels.size();
+    std::size_t level = 0;
+    while (level < levels && o.level != fmt::format("l{}", level + 1)) ++level;
+    if (level == levels)
+        throw UsageError(
+            fmt::format("--level '{}'; expected one of: l1, l2{} for {}", o.level, levels > 2 ? ", l3" : "", gpu.name));
+    if (level + 1 == levels) {
+        if (o.sm || o.l1)
+            throw UsageError(fmt::format("--sm or --l1 with --level {}; expected neither: all SMs of {} share it",
+                                         o.level, gpu.name));
+        return {level, 0, {}};
     }
     if (!o.sm) throw UsageError(fmt::format("--sm is missing; expected 0 to {} for {}", gpu.sms - 1, gpu.name));
     if (*o.sm >= gpu.sms)
         throw UsageError(fmt::format("--sm {}; expected 0 to {} for {}", *o.sm, gpu.sms - 1, gpu.name));
+    if (level > 0 && o.l1) throw UsageError(fmt::format("--l1 with --level {}; expected none: an SM has one", o.level));
+    if (level > 0) return {level, *o.sm, {}};
     if (o.l1 && *o.l1 >= gpu.l1_per_sm)
         throw UsageError(fmt::format("--l1 {}; expected 0 to {} for {}", *o.l1, gpu.l1_per_sm - 1, gpu.name));
     if (!o.l1 && gpu.l1_per_sm > 1 && !format.names_cache)
@@ -61,7 +69,7 @@ cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gp
             fmt::format("--l1 is missing; expected 0 to {}: an SM of {} has {} L1s, and --format {} cannot tell them "
                         "apart (csv can)",
                         gpu.l1_per_sm - 1, gpu.name, gpu.l1_per_sm, format.name));
-    return {o.sm, o.l1};
+    return {level, *o.sm, o.l1};
 }
 
 void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
@@ -73,7 +81,7 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
     check_launch(o, header);
 
     traces::OutputFile file(o.output);
-    cachesim::SectorStream stream(choice, format, gpu.levels[0].sector_bytes,
+    cachesim::SectorStream stream(choice, format, gpu.l1().sector_bytes,
                                   [&](std::string_view piece) { file.write(piece); });
     cachesim::Replay replay(gpu, header.regions, header.launches[o.launch]);
     replay.observe(stream);
@@ -119,9 +127,9 @@ void add_export(CLI::App& app) {
     command->add_option("--launch", o->launch, "which launch of the trace; each begins with empty caches")
         ->capture_default_str();
     command->add_option("--gpu", o->gpu, "GPU preset or FILE.toml (see 'raycache list gpus')");
-    command->add_option("--level", o->level, "l1: the L1 of one SM; l2: the L2 that all SMs share")
+    command->add_option("--level", o->level, "l1, l2 or l3: of one SM, or the last, which all SMs share")
         ->capture_default_str();
-    command->add_option("--sm", o->sm, "the SM whose L1 is meant, from 0");
+    command->add_option("--sm", o->sm, "the SM whose cache is meant, from 0");
     command->add_option("--l1", o->l1, "which of its L1s, where an SM has several");
     command
         ->add_option("--warps-per-cta", o->traceg.warps_per_cta,

@@ -11,9 +11,23 @@
 namespace raycache::tools {
 namespace {
 
-const char* index_name(cachesim::SetIndex index) { return index == cachesim::SetIndex::modulo ? "modulo" : "xor_fold"; }
+const char* index_name(cachesim::SetIndex index) {
+    switch (index) {
+        case cachesim::SetIndex::modulo:
+            return "modulo";
+        case cachesim::SetIndex::xor_fold:
+            return "xor_fold";
+        case cachesim::SetIndex::ipoly:
+            return "ipoly";
+        case cachesim::SetIndex::parity:
+            return "parity";
+    }
+    return "?";
+}
 
-std::string shape(const cachesim::CacheGeometry& cache) { return fmt::format("{} x {}", cache.sets, cache.ways); }
+std::string shape(const cachesim::CacheGeometry& cache) {
+    return fmt::format("{}{} x {}", cache.slices > 1 ? fmt::format("{} x ", cache.slices) : "", cache.sets, cache.ways);
+}
 
 }  // namespace
 
@@ -28,7 +42,7 @@ std::string gpu_details_text() {
     for (const char* title : {"L2 MiB", "sets x ways"}) table.column(title, Align::right);
     table.column("index", Align::left);
     table.column("policy", Align::left);
-    table.column("line/sector B", Align::right);
+    for (const char* title : {"L3 MiB", "line/sector B"}) table.column(title, Align::right);
 
     std::string values;
     for (const cachesim::GpuPreset& preset : cachesim::gpu_presets()) {
@@ -39,6 +53,8 @@ std::string gpu_details_text() {
                    index_name(gpu.levels[0].index), gpu.levels[0].policy,
                    fmt::format("{}", static_cast<double>(gpu.levels[1].bytes()) / (1024 * 1024)), shape(gpu.levels[1]),
                    index_name(gpu.levels[1].index), gpu.levels[1].policy,
+                   gpu.levels.size() > 2 ? fmt::format("{}", static_cast<double>(gpu.levels[2].bytes()) / (1024 * 1024))
+                                         : "-",
                    fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
         values += fmt::format("\n{}: {}\n", gpu.name, gpu.description);
         const auto all = cachesim::gpu_values(preset.name);
@@ -50,7 +66,10 @@ std::string gpu_details_text() {
         for (const auto& v : all)
             values += fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source);
     }
-    return table.text() + "\nL1 KiB: of one L1; L1/SM: how many an SM has; sets x ways: of the L1, then of the L2\n" +
+    return table.text() +
+           "\nL1 KiB: of one L1; L1/SM: how many an SM has; sets x ways: of the L1, then of the L2, after its slices "
+           "where "
+           "it has several;\nL2 MiB: of the whole GPU, or where there is an L3 of one core\n" +
            values;
 }
 
@@ -62,7 +81,7 @@ std::string gpu_details_json() {
         out["name"] = gpu.name;
         out["description"] = gpu.description;
         for (const auto& [key, value, source] : cachesim::gpu_values(preset.name)) {
-            const bool number = value.find_first_not_of("0123456789") == std::string::npos;
+            const bool number = !value.empty() && value.find_first_not_of("0123456789") == std::string::npos;
             const nlohmann::ordered_json given = {
                 {"value", number ? nlohmann::ordered_json(std::stoull(value)) : nlohmann::ordered_json(value)},
                 {"source", source}};
@@ -71,9 +90,10 @@ std::string gpu_details_json() {
                 out[key] = given;
                 continue;
             }
-            const std::string level = key.substr(0, dot);
-            if (!out.contains(level)) out[level]["bytes"] = (level == "l1" ? gpu.levels[0] : gpu.levels[1]).bytes();
-            out[level][key.substr(dot + 1)] = given;
+            const std::string table = key.substr(0, dot);  // "l1", "front_end"
+            for (std::size_t level = 0; level < gpu.levels.size(); ++level)
+                if (table == fmt::format("l{}", level + 1)) out[table]["bytes"] = gpu.levels[level].bytes();
+            out[table][key.substr(dot + 1)] = given;
         }
     }
     return nlohmann::ordered_json{{"gpus", gpus}}.dump(2) + "\n";

@@ -193,6 +193,9 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
                        "strategy that ratios refer to; default: cranley-patterson where it is compared");
     app.add_flag("--json", json, "print JSON");
     app.add_flag("--csv", csv, "print CSV");
+    app.add_option("--counters", counters,
+                   "ncu: instead of the table, totals under the names of Nsight Compute's metrics")
+        ->check(CLI::IsMember({"ncu"}));
     app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
 }
 
@@ -202,9 +205,23 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
         loaded.push_back(cachesim::load_gpu(name, changes));
         if (warps_per_sm != 0) loaded.back().warps_per_sm = warps_per_sm;
     }
-    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
-    parse_by(by);
+    check(loaded);
     return loaded;
+}
+
+void ReportOptions::check(const std::vector<cachesim::Gpu>& loaded) const {
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
+    if (!counters.empty() && (json || csv))
+        throw UsageError("--counters with --json or --csv; expected it alone (--save PREFIX writes the other formats)");
+    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
+    if (timed && by != "none")
+        throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
+    for (const cachesim::Gpu& gpu : loaded)
+        if (!counters.empty() && gpu.levels.size() != 2)
+            throw UsageError(
+                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}", gpu.name,
+                            gpu.levels.size()));
+    parse_by(by);
 }
 
 namespace {
@@ -225,6 +242,12 @@ void publish_report(const Report& report, const ReportOptions& o) {
         save_text(o.save + ".txt", cachesim::to_text(report));
         save_text(o.save + ".json", cachesim::to_json(report));
         save_text(o.save + ".csv", cachesim::to_csv(report));
+    }
+    if constexpr (requires { cachesim::to_profiler_text(report); }) {
+        if (!o.counters.empty()) {
+            print(cachesim::to_profiler_text(report));
+            return;
+        }
     }
     print(o.json ? cachesim::to_json(report) : o.csv ? cachesim::to_csv(report) : cachesim::to_text(report));
 }

@@ -53,11 +53,13 @@ struct ReportOptions {
     std::vector<std::string> gpus, changes;
     std::uint32_t warps_per_sm = 0;
     bool timed = false;
-    std::string by = "none", baseline, save;
+    std::string by = "none", baseline, save, counters;
     bool json = false, csv = false;
 
     void add(CLI::App&, bool with_baseline);
     std::vector<cachesim::Gpu> load_gpus() const;
+    /// Refuses what cannot be printed together. load_gpus() calls it.
+    void check(const std::vector<cachesim::Gpu>&) const;
     /// Makes the report of `series`, prints it in the chosen format, and saves all formats where asked.
     void publish(const std::vector<cachesim::Series>& series) const;
     void publish(const std::vector<cachesim::TimedSeries>& series) const;

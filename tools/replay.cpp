@@ -33,7 +33,8 @@ void add_replay(CLI::App& app) {
         "Examples:\n"
         "  raycache replay mj.rct --gpu gtx-980-ti\n"
         "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed");
+        "  raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed\n"
+        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu");
     command->callback([o] { run(*o); });
 }
 

@@ -29,7 +29,8 @@ std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::
             made.parameters = p.parameters;
             made.thread_map = p.thread_map;
             made.gpu = gpu.name;
-            made.sector_bytes = gpu.levels[0].sector_bytes;
+            made.sector_bytes = gpu.l1().sector_bytes;
+            if constexpr (requires { made.levels; }) made.levels = gpu.levels.size();
             made.spp = p.spp;
             made.launches.resize(header.launches.size());
         }

@@ -30,9 +30,10 @@ FACTORS = [  # key in the JSON, name, what it says
     ("coalescing", "coalescing", "32-byte sectors per warp access: fewer if the lanes read the same or neighbouring places"),
     ("l1_locality", "L1 locality", "share of the sectors that L1 does not have"),
     ("l2_locality", "L2 locality", "share of those that L2 does not have either"),
+    ("l3_locality", "L3 locality", "share of those that L3 does not have either"),
 ]
 
-COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line
+COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Those of an L3 show only where a GPU has one
     ("rays", lambda r: f"{r['totals']['rays']:,}".replace(",", "\u202f"),
      "camera, shadow and bounce rays traced, over all traced sample indices"),
     ("steps\nper ray", lambda r: fixed(r["steps_per_ray"], 1),
@@ -42,11 +43,14 @@ COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line
     ("sectors\nper access", lambda r: fixed(r["sectors_per_access"], 2),
      "different 32-byte pieces of memory that one warp access touches; lower is better"),
     ("L1\nhits", lambda r: percent(r["l1_hit_rate"]), "share of those sectors found in the first-level cache of the multiprocessor"),
-    ("L2\nhits", lambda r: percent(r["l2_hit_rate"]), "share of the rest found in the second-level cache of the whole GPU"),
+    ("L2\nhits", lambda r: percent(r["l2_hit_rate"]), "share of the rest found in the second-level cache, on a GPU that of all multiprocessors"),
+    ("L3\nhits", lambda r: percent(r["l3_hit_rate"]), "share of the rest found in the third-level cache, which all share"),
     ("L2\u2192L1\nB/ray", lambda r: interval(r["l2_bytes_per_ray"]),
      "bytes per ray that L1 did not have and asked L2 for"),
+    ("L3\u2192L2\nB/ray", lambda r: interval(r["l3_bytes_per_ray"]),
+     "bytes per ray that L2 did not have and asked L3 for"),
     ("DRAM\nB/ray", lambda r: interval(r["dram_bytes_per_ray"]),
-     "bytes per ray that neither cache had and that came from memory"),
+     "bytes per ray that no cache had and that came from memory"),
     ("L2\u2192L1\nratio", lambda r: interval(r["l2_bytes_ratio"]),
      "L2\u2192L1 bytes per ray over those of the baseline strategy, compared sample index by sample index; below 1 is better"),
     ("DRAM\nratio", lambda r: interval(r["dram_bytes_ratio"]),
@@ -95,6 +99,9 @@ class Comparison:
         self.baseline = report["baseline"]
         self.notes = report["notes"]
         self.grouped = report["by"] != "none"
+        has_l3 = any("l3_hit_rate" in row for row in self.rows)
+        self.columns = [column for column in COLUMNS if has_l3 or not column[0].startswith("L3")]
+        self.factors = [factor for factor in FACTORS if has_l3 or factor[0] != "l3_locality"]
         if not self.rows:
             raise BadInput("no rows; run 'raycache compare' first")
         fields = [f for f in ("scene", "sequence", "thread_map") if len({r[f] for r in self.rows}) > 1]
@@ -163,23 +170,23 @@ def factor_chart(comparison, setting):
     counts = sorted({r["spp"] for r in rows})
     figure, axes = plt.subplots(len(labels), len(counts), figsize=(3.3 * len(counts) + 1.2, 2.3 * len(labels) + 0.5),
                                 squeeze=False, sharex=True, sharey=True, layout="constrained")
-    names = [name for _, name, _ in FACTORS] + ["DRAM ratio"]
+    names = [name for _, name, _ in comparison.factors] + ["DRAM ratio"]
     for axis in axes.flat:
         axis.set_visible(False)
     for row in rows:
         axis = axes[labels.index(comparison.label(row))][counts.index(row["spp"])]
         axis.set_visible(True)
         value = 1
-        for place, (key, _, _) in enumerate(FACTORS):
+        for place, (key, _, _) in enumerate(comparison.factors):
             factor = row["factors"][key]
             axis.barh(place, value * factor - value, left=value, color=LESS if factor < 1 else MORE, height=0.7)
             axis.plot([value * factor] * 2, [place - 0.35, place + 1.35], color="#666666", linewidth=0.8)
             axis.annotate(f"\u00d7 {factor:.2f}", (max(value, value * factor), place), xytext=(4, 0),
                           textcoords="offset points", va="center", fontsize=8)
             value *= factor
-        axis.barh(len(FACTORS), value - 1, left=1, color="#444444", height=0.7,
+        axis.barh(len(comparison.factors), value - 1, left=1, color="#444444", height=0.7,
                   xerr=half_width(row["dram_bytes_ratio"]), error_kw={"ecolor": "black", "capsize": 3})
-        axis.annotate(f"= {value:.2f}", (max(1, value + half_width(row["dram_bytes_ratio"])), len(FACTORS)), xytext=(4, 0), textcoords="offset points",
+        axis.annotate(f"= {value:.2f}", (max(1, value + half_width(row["dram_bytes_ratio"])), len(comparison.factors)), xytext=(4, 0), textcoords="offset points",
                       va="center", fontsize=8, weight="bold")
         axis.axvline(1, color="black", linewidth=0.8)
         axis.set_yticks(range(len(names)), names)
@@ -221,14 +228,14 @@ def table(comparison, setting):
     group = [("group", lambda r: html.escape(r["group"]))] if comparison.grouped else []
     lead = [("strategy", lambda r: html.escape(comparison.label(r))), ("N", lambda r: str(r["spp"])), *group]
     lines = ["<tr>" + "".join(f"<th{' class=left' if i == 0 else ''}>{t}</th>" for i, (t, _) in enumerate(lead)) +
-             "".join(f'<th title="{html.escape(words)}">{title.replace(chr(10), "<br>")}</th>' for title, _, words in COLUMNS) +
+             "".join(f'<th title="{html.escape(words)}">{title.replace(chr(10), "<br>")}</th>' for title, _, words in comparison.columns) +
              "</tr>"]
     previous = None
     for row in sorted(comparison.of(setting), key=lambda r: r["spp"]):
         rule = ' class="rule"' if previous not in (None, row["spp"]) else ""
         previous = row["spp"]
         cells = [cell(row) for _, cell in lead]
-        values = [cell(row) for _, cell, _ in COLUMNS]
+        values = [cell(row) for _, cell, _ in comparison.columns]
         if row["strategy"] == comparison.baseline:
             values[-2:] = ["baseline", "baseline"]
         lines.append(f"<tr{rule}><td class=left>{cells[0]}</td>" + "".join(f"<td>{c}</td>" for c in cells[1:] + values) + "</tr>")
@@ -271,7 +278,7 @@ def page(comparison, picture, command):
             parts.append(f"<h2>Where the difference comes from</h2>\n<p>Read each panel from top to bottom: start at 1, the traffic of "
                          f"{html.escape(comparison.baseline)}; each factor moves it <b style='color:{LESS}'>left (less)</b> or "
                          f"<b style='color:{MORE}'>right (more)</b>; the last bar is where it ends. The factors multiply to the ratio exactly.</p>\n<dl>" +
-                         "".join(f"<dt>{name}</dt><dd>{words}</dd>" for _, name, words in FACTORS) + "</dl>")
+                         "".join(f"<dt>{name}</dt><dd>{words}</dd>" for _, name, words in comparison.factors) + "</dl>")
             parts += [f'<h3>{html.escape(comparison.titles[s])}</h3>\n<img alt="factors of the DRAM ratio" '
                       f'src="data:image/svg+xml;base64,{chart}">' for s, chart in charts if chart]
     parts.append("<h2>All numbers</h2>\n<div class=scroll>" + "\n".join(table(comparison, s) for s in comparison.settings) + "</div>")
@@ -279,7 +286,7 @@ def page(comparison, picture, command):
     strategies = distinct((r["strategy"], r["spp"], r["parameters"]) for r in comparison.rows if r["parameters"])
     parts.append("<h2>What the words mean</h2>\n<dl><dt>N</dt><dd>samples per pixel of the whole picture. Only some sample indices "
                  "are traced: a random choice, the same for every strategy</dd>" +
-                 "".join(f"<dt>{title.replace(chr(10), ' ')}</dt><dd>{words}</dd>" for title, _, words in COLUMNS) + "</dl>")
+                 "".join(f"<dt>{title.replace(chr(10), ' ')}</dt><dd>{words}</dd>" for title, _, words in comparison.columns) + "</dl>")
     if strategies:
         parts.append("<h3>Parameters</h3>\n<ul>" + "".join(f"<li>{html.escape(s)}, N = {n}: {html.escape(p)}</li>" for s, n, p in strategies) + "</ul>")
     if picture:

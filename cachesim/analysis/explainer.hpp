@@ -32,15 +32,12 @@ public:
     const Findings& findings() const { return findings_; }
     const PixelCosts& pixel_costs() const { return pixel_costs_; }
 
-    bool wants_l1(std::uint32_t) const override { return true; }
-    bool wants_l2() const override { return true; }
+    bool wants(std::size_t, std::uint32_t) const override { return true; }
     void issued(const IssuedAccess&) override;
-    void l1(const ServedRequest& request) override { served(0, request); }
-    void l2(const ServedRequest& request) override { served(1, request); }
+    void served(std::size_t level, const ServedRequest&) override;
     void end_window() override { log_.clear(); }
 
 private:
-    void served(std::size_t level, const ServedRequest&);
     void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t entry);
 
     std::uint32_t l1_per_sm_, warps_per_cta_, sectors_per_line_, line_bytes_;

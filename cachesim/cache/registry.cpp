@@ -5,7 +5,10 @@
 
 #include <string_view>
 
+#include "cachesim/cache/policies/fifo.hpp"
 #include "cachesim/cache/policies/lru.hpp"
+#include "cachesim/cache/policies/random.hpp"
+#include "cachesim/cache/policies/tree_plru.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::cachesim {
@@ -19,7 +22,10 @@ struct Entry {
 
 /// Sorted by name.
 constexpr Entry policies[] = {
+    {"fifo", make_fifo},
     {"lru", make_lru},
+    {"random", make_random},
+    {"tree_plru", make_tree_plru},
 };
 
 }  // namespace

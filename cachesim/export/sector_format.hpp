@@ -13,7 +13,7 @@ namespace raycache::cachesim {
 /// A look-up of one sector.
 struct SectorAccess {
     std::uint64_t address = 0;  ///< of the sector's first byte
-    std::uint32_t cache = 0;    ///< which L1 of the SM; 0 for L2
+    std::uint32_t cache = 0;    ///< which L1 of the SM; 0 for the levels below
     traces::RayType ray = {};
     std::uint8_t bounce = 0;
     traces::ObjectKind kind = {};

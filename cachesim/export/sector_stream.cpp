@@ -13,11 +13,8 @@ SectorStream::SectorStream(Choice choice, const SectorFormat& format, std::uint3
                            std::function<void(std::string_view)> write)
     : choice_(choice), format_(format), sector_bytes_(sector_bytes), write_(std::move(write)), pending_(format.head) {}
 
-void SectorStream::l1(const ServedRequest& request) {
-    if (!choice_.l1 || *choice_.l1 == request.cache) add(request);
-}
-
-void SectorStream::add(const ServedRequest& request) {
+void SectorStream::served(std::size_t /*level*/, const ServedRequest& request) {
+    if (choice_.l1 && *choice_.l1 != request.cache) return;
     for (std::uint32_t left = request.asked; left != 0; left &= left - 1) {
         const auto sector = static_cast<unsigned>(std::countr_zero(left));
         format_.append({request.address + std::uint64_t{sector} * sector_bytes_, request.cache, request.ray,

@@ -1,4 +1,4 @@
-// Sends what one SM's L1s, or L2, are asked during a replay to a text or byte stream.
+// Sends what the caches of one SM, or the level that all SMs share, are asked during a replay to a text or byte stream.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,24 @@ class SectorStream final : public RequestSink {
 public:
     /// Whom to listen to.
     struct Choice {
-        std::optional<std::uint32_t> sm;  ///< this SM's L1s; none: L2
+        std::size_t level = 0;            ///< index into Gpu::levels
+        std::uint32_t sm = 0;             ///< whose caches; 0 for the level that all share
         std::optional<std::uint32_t> l1;  ///< only this L1 of the SM; none: all of them, in the order of the replay
     };
 
     /// `write` gets the format's head, then the sectors, in pieces of about 64 KiB.
     SectorStream(Choice, const SectorFormat&, std::uint32_t sector_bytes, std::function<void(std::string_view)> write);
 
-    bool wants_l1(std::uint32_t sm) const override { return choice_.sm == sm; }
-    bool wants_l2() const override { return !choice_.sm; }
-    void l1(const ServedRequest&) override;
-    void l2(const ServedRequest& request) override { add(request); }
+    bool wants(std::size_t level, std::uint32_t sm) const override {
+        return level == choice_.level && sm == choice_.sm;
+    }
+    /// The sectors of a look-up in ascending order.
+    void served(std::size_t level, const ServedRequest&) override;
 
     /// Writes what is left. Call after Replay::finish().
     void flush();
 
 private:
-    /// The sectors of a look-up in ascending order.
-    void add(const ServedRequest&);
-
     Choice choice_;
     const SectorFormat& format_;
     std::uint32_t sector_bytes_;

@@ -32,6 +32,7 @@ struct CacheGeometry {
     std::uint32_t line_bytes = 128, sector_bytes = 32;
     SetIndex index = SetIndex::modulo;
     std::string policy = "lru";  ///< what to evict: a name of cache_policies()
+    std::uint64_t seed = 1;      ///< policy "random": other numbers, other victims
 
     /// SetIndex::parity: set bit i = parity(byte address & index_masks[i]).
     std::vector<std::uint64_t> index_masks{};
@@ -49,7 +50,7 @@ struct CacheGeometry {
     std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
 };
 
-/// Which resident warp of an SM issues next.
+/// Which resident warp of an SM issues next, where time says which are ready. A functional replay always takes turns.
 enum class Scheduler {
     loose_round_robin,   ///< the next ready warp in slot order
     greedy_then_oldest,  ///< the same warp as long as it is ready, then the one that became resident first

@@ -13,8 +13,8 @@ constexpr const char* root_keys[] = {"name",      "description", "sms",       "w
 constexpr const char* front_end_keys[] = {"load_bytes", "lanes_per_request_16", "lanes_per_request_8",
                                           "lanes_per_request_4"};
 constexpr const char* cache_keys[] = {
-    "sets",   "ways",       "line_bytes",       "sector_bytes", "index",           "index_masks", "policy",
-    "slices", "slice_hash", "interleave_bytes", "slice_bits",   "slice_hash_from", "fill_bytes"};
+    "sets", "ways",   "line_bytes", "sector_bytes",     "index",      "index_masks",     "policy",
+    "seed", "slices", "slice_hash", "interleave_bytes", "slice_bits", "slice_hash_from", "fill_bytes"};
 constexpr const char* timing_keys[] = {"clock_mhz",
                                        "launch_cycles",
                                        "schedulers",
@@ -22,7 +22,9 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "triangle_instructions",
                                        "texel_instructions",
                                        "instruction_latency",
+                                       "instruction_interval",
                                        "dependent_chains",
+                                       "accesses_in_flight",
                                        "load_queue",
                                        "answers_per_cycle",
                                        "l1_port",
@@ -63,6 +65,7 @@ CacheGeometry read_cache(TomlReader::Section section) {
     cache.sector_bytes = section.number<std::uint32_t>("sector_bytes");
     cache.index = section.choice("index", set_indices);
     cache.policy = section.text("policy");
+    cache.seed = section.number_or("seed", cache.seed, true);
     cache.index_masks = section.numbers_or_none<std::uint64_t>("index_masks");
     cache.slices = section.number_or("slices", cache.slices);
     cache.slice_hash = section.choice_or("slice_hash", slice_hashes, cache.slice_hash);
@@ -91,7 +94,9 @@ Timing read_timing(TomlReader::Section section) {
     t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
     t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
     t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
+    t.instruction_interval = section.number_or("instruction_interval", t.instruction_interval);
     t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
+    t.accesses_in_flight = section.number_or("accesses_in_flight", t.accesses_in_flight);
     t.load_queue = section.number_or("load_queue", t.load_queue);
     t.answers_per_cycle = section.number_or("answers_per_cycle", t.answers_per_cycle, true);
     t.l1_port = section.choice_or("l1_port", l1_ports, t.l1_port);

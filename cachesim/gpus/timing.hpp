@@ -31,8 +31,11 @@ struct Timing {
     /// next that depends on it.
     std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
     std::uint32_t instruction_latency = 4;
+    std::uint32_t instruction_interval = 1;  ///< cycles from one of them to the next of the same scheduler
     std::uint32_t dependent_chains = 4;  ///< instructions of a visit that may be under way at once
 
+    /// Visits of a warp that may be under way at once. Traversal needs what one visit brings for the next: 1.
+    std::uint32_t accesses_in_flight = 1;
     std::uint32_t load_queue = 4;  ///< loads of a scheduler that may wait for the port of L1
     std::uint32_t answers_per_cycle =
         0;  ///< look-ups whose sector came from below that an SM can answer; 0: any number

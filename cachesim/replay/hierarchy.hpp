@@ -1,6 +1,6 @@
 // The memory system behind the front end: warp accesses in, counts out. What an SM requests is collected and looked up
-// in its L1s in batches; what is missing there waits for the end of the window of rounds, then goes to L2 in order of
-// issue. Nothing comes back.
+// in the caches of its own in batches, level after level; what the last of them lacks waits for the end of the window
+// of rounds, then goes to the shared level in order of issue. Nothing comes back.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,12 @@
 #include <memory>
 #include <vector>
 
+#include "cachesim/cache/fill.hpp"
 #include "cachesim/cache/level.hpp"
 #include "cachesim/cache/registry.hpp"
 #include "cachesim/frontend/coalesce.hpp"
 #include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/frontend/load_counter.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/miss_window.hpp"
@@ -26,14 +28,19 @@ class Hierarchy {
 public:
     Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
         : l1_per_sm_(gpu.l1_per_sm),
-          ids_(regions, gpu.levels[0].line_bytes),
-          coalesce_(regions, LineShape(gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes), instructions),
-          l1_(make_level(gpu.levels[0], gpu.sms * gpu.l1_per_sm, ids_, instructions)),
-          l2_(make_level(gpu.levels[1], 1, ids_, instructions)),
+          ids_(regions, gpu.l1().line_bytes),
+          coalesce_(regions, LineShape(gpu.l1().line_bytes, gpu.l1().sector_bytes), instructions),
+          count_loads_(regions, gpu.front_end, LineShape(gpu.l1().line_bytes, gpu.l1().sector_bytes)),
+          shared_(gpu.levels.size() - 1),
           requests_(batch_size + coalesce_.max_requests()),
           rounds_(requests_.size()),
-          line_bytes_(gpu.levels[0].line_bytes),
+          line_bytes_(gpu.l1().line_bytes),
           misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 512), coalesce_.max_requests()) {
+        for (std::size_t level = 0; level <= shared_; ++level) {
+            const unsigned caches = level == shared_ ? 1 : level == 0 ? gpu.sms * gpu.l1_per_sm : gpu.sms;
+            levels_.push_back(make_level(gpu.levels[level], caches, ids_, instructions));
+            fills_.emplace_back(gpu.levels[level]);
+        }
         for (const traces::Region& region : regions) kinds_.push_back(region.kind);
     }
 
@@ -60,7 +67,8 @@ public:
         like.cache = static_cast<std::uint8_t>(l1);
         const unsigned lanes = record.lanes();
         const Coalesced made = coalesce_(elements, lanes, like, &requests_[pending_]);
-        tally_.add_access(like.group, lanes, made.sectors);
+        tally_.add_access(like.group, lanes, made.sectors,
+                          count_loads_(record.region, record.mask, elements, made.sectors));
         misses_.reserve(round);
         mark(round, made.requests);
         if (sink_) [[unlikely]]
@@ -71,31 +79,22 @@ public:
 
     /// The SM's accesses so far are all for now.
     void end_sm(unsigned sm) {
-        const std::span<Request> asked(requests_.data(), pending_);
-        const bool observed = sink_ && sink_->wants_l1(sm);
-        if (observed) note(asked);
-        l1_->process(asked, sm * l1_per_sm_);
-        if (observed)
-            for (std::size_t i = 0; i < pending_; ++i) sink_->l1(served(i, asked[i], sm, asked[i].cache, accesses_));
-        tally_.add_l2(asked);
-        for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], asked[i]);
+        look_up(0, {requests_.data(), pending_}, sm * l1_per_sm_, sm, accesses_);
+        for (std::size_t level = 1; level < shared_; ++level) {
+            keep_fetched();
+            look_up(level, {requests_.data(), pending_}, sm, sm, accesses_);
+        }
+        for (std::size_t i = 0; i < pending_; ++i) misses_.add(rounds_[i], requests_[i]);
         if (sink_)
             for (std::size_t i = 0; i < pending_; ++i)
-                if (asked[i].sectors) missing_for_[rounds_[i]].push_back(accesses_[i]);
+                if (requests_[i].sectors) missing_for_[rounds_[i]].push_back(accesses_[i]);
         pending_ = 0;
     }
 
-    /// All SMs have run all rounds: L2's turn.
+    /// All SMs have run all rounds: the shared level's turn.
     void end_window() {
         for (std::size_t round = 0; round < misses_.rounds(); ++round) {
-            const std::span<Request> asked = misses_.take(round);
-            const bool observed = sink_ && sink_->wants_l2();
-            if (observed) note(asked);
-            l2_->process(asked, 0);
-            if (observed)
-                for (std::size_t i = 0; i < asked.size(); ++i)
-                    sink_->l2(served(i, asked[i], 0, 0, missing_for_[round]));
-            tally_.add_dram(asked);
+            look_up(shared_, misses_.take(round), 0, 0, missing_for_.empty() ? accesses_ : missing_for_[round]);
             if (sink_) missing_for_[round].clear();
         }
         if (sink_) sink_->end_window();
@@ -103,7 +102,7 @@ public:
     }
 
     /// The counts of all windows that have ended.
-    std::vector<RayGroup> groups() const { return tally_.groups(); }
+    std::vector<RayGroup> groups() const { return tally_.groups(levels_.size()); }
 
 private:
     static constexpr std::size_t batch_size = 1024;
@@ -120,46 +119,66 @@ private:
     }
     static constexpr std::size_t few = 16;
 
+    /// Leaves in the requests what the level fetches for them. `accesses`: of each of them, while a sink listens.
+    void look_up(std::size_t level, std::span<Request> requests, std::uint32_t first_cache, unsigned sm,
+                 const std::vector<std::uint32_t>& accesses) {
+        const bool observed = sink_ && sink_->wants(level, sm), widens = fills_[level].widens();
+        if (observed || widens) {
+            asked_.clear();
+            for (const Request& request : requests) asked_.push_back(request.sectors);
+        }
+        levels_[level]->process(requests, first_cache);
+        if (observed) report(level, requests, sm, accesses);
+        if (widens) tally_.add_unasked(level, requests, asked_);
+        tally_.add_fetched(level, requests);
+    }
+
+    void report(std::size_t level, std::span<const Request> answers, unsigned sm,
+                const std::vector<std::uint32_t>& accesses) const {
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            const Request& answer = answers[i];
+            const GroupKey key = tally_.key(answer.group);
+            sink_->served(level, {answer.line * line_bytes_, asked_[i], answer.sectors & asked_[i], sm,
+                                  level == 0 ? answer.cache : 0u, key.ray, key.bounce, key.kind, accesses[i]});
+        }
+    }
+
+    /// Of the pending requests, keeps those that a level did not answer alone, for the SM's one cache of the next.
+    void keep_fetched() {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < pending_; ++i) {
+            requests_[kept] = requests_[i];
+            requests_[kept].cache = 0;
+            rounds_[kept] = rounds_[i];
+            if (sink_) accesses_[kept] = accesses_[i];
+            kept += requests_[i].sectors != 0;
+        }
+        pending_ = kept;
+    }
+
     /// Tells the sink of an access, and notes the number it has there for the requests that are about to be pending.
     void announce(const IssuedAccess& access, std::size_t requests) {
         sink_->issued(access);
         std::fill_n(accesses_.begin() + static_cast<std::ptrdiff_t>(pending_), requests, issued_++);
     }
 
-    /// Keeps what is asked: the answer will stand in its place.
-    void note(std::span<const Request> asked) {
-        noted_.clear();
-        for (const Request& request : asked) noted_.push_back(request.sectors);
-    }
-    /// Request i of those noted, now answered.
-    ServedRequest served(std::size_t i, const Request& answer, unsigned sm, unsigned cache,
-                         const std::vector<std::uint32_t>& accesses) const {
-        const GroupKey key = tally_.key(answer.group);
-        return {answer.line * line_bytes_,
-                noted_[i],
-                answer.sectors,
-                sm,
-                cache,
-                key.ray,
-                key.bounce,
-                key.kind,
-                accesses[i]};
-    }
-
     unsigned l1_per_sm_;
     LineIds ids_;
     Coalescer coalesce_;
-    std::unique_ptr<Level> l1_, l2_;
-    std::vector<traces::ObjectKind> kinds_;  ///< of each region
+    LoadCounter count_loads_;
+    std::vector<std::unique_ptr<Level>> levels_;  ///< from L1 down
+    std::vector<Fill> fills_;                     ///< of each of them
+    std::size_t shared_;                          ///< the last of them: one cache for all SMs
+    std::vector<traces::ObjectKind> kinds_;       ///< of each region
     Tally tally_;
     std::vector<Request> requests_;      ///< of one SM, not yet looked up
     std::vector<std::uint16_t> rounds_;  ///< of each of them
     std::size_t pending_ = 0;
     std::uint32_t line_bytes_;
     RequestSink* sink_ = nullptr;
-    std::vector<std::uint32_t> noted_;     ///< sectors asked for, while a level answers and the sink listens
-    std::uint32_t issued_ = 0;             ///< accesses of this window, while a sink listens
-    std::vector<std::uint32_t> accesses_;  ///< of each pending request, while a sink listens
+    std::vector<std::uint32_t> asked_;                     ///< sectors asked for, while a level answers
+    std::uint32_t issued_ = 0;                             ///< accesses of this window, while a sink listens
+    std::vector<std::uint32_t> accesses_;                  ///< of each pending request, while a sink listens
     std::vector<std::vector<std::uint32_t>> missing_for_;  ///< likewise, of each request in misses_, by round
     MissWindow misses_;
 };

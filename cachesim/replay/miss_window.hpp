@@ -1,8 +1,8 @@
 // What the L1s of all SMs lack during some rounds, in order of issue: by round, within a round by SM.
 //
 // A cache never decides who issues next, so an SM may run many rounds before the next SM does, and its L1s stay in the
-// caches of the machine that simulates them. Only L2 sees the SMs one after the other in every round: what they ask of
-// it waits here until the last SM has run.
+// caches of the machine that simulates them. Only the shared level sees the SMs one after the other in every round:
+// what they ask of it waits here until the last SM has run.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,9 @@
-// One SM: its resident CTAs and whose turn it is. Loose round-robin: after slot s the next unfinished resident warp in
-// slot order has its turn, slot 0 following the last.
+// One SM: its resident CTAs and whose turn it is. After slot s the next unfinished resident warp in slot order has its
+// turn, slot 0 following the last. A machine of fewer lanes than a warp runs each record as several vectors,
+// neighbouring lanes together: those without active lanes take no turn, each other takes one.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,11 +19,12 @@ namespace raycache::cachesim {
 class Multiprocessor {
 public:
     /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM.
-    Multiprocessor(unsigned number, unsigned cta_slots, unsigned warps_per_cta, unsigned l1_per_sm)
+    Multiprocessor(unsigned number, unsigned cta_slots, const Gpu& gpu)
         : number_(number),
-          warps_per_cta_(warps_per_cta),
-          l1_per_sm_(l1_per_sm),
-          traces_(std::size_t{cta_slots} * warps_per_cta),
+          warps_per_cta_(gpu.warps_per_cta),
+          l1_per_sm_(gpu.l1_per_sm),
+          simd_width_(gpu.simd_width),
+          traces_(std::size_t{cta_slots} * warps_per_cta_),
           unfinished_(cta_slots) {}
 
     bool idle() const { return active_.empty(); }
@@ -62,7 +65,8 @@ public:
 private:
     struct Warp {
         const traces::Record *next = nullptr, *end = nullptr;
-        const std::uint32_t* elements = nullptr;  ///< of `next`
+        const std::uint32_t* elements = nullptr;  ///< of `next`, from the first lane left on
+        std::uint32_t left = 0;                   ///< lanes of `next` that have not had their turn
         unsigned slot = 0;
         unsigned l1 = 0;
     };
@@ -79,11 +83,14 @@ private:
         __builtin_prefetch(later.next + 1);
         __builtin_prefetch(later.elements);
         __builtin_prefetch(later.elements + 16);
-        const traces::Record record = *warp.next++;
+        traces::Record record = *warp.next;
+        record.mask = first_vector(warp.left);
+        warp.left &= ~record.mask;
+        if (!warp.left) ++warp.next;
         memory.access(record, warp.elements, traces_[warp.slot], number_, warp.l1, round);
         warp.elements += record.lanes();
         resume_slot_ = warp.slot + 1;
-        if (advance_to_access(warp, memory)) {
+        if (warp.left || advance_to_access(warp, memory)) {
             ++turn_;
             return none;
         }
@@ -93,16 +100,25 @@ private:
         return --unfinished_[cta_slot] > 0 ? none : cta_slot;
     }
 
+    /// The lanes, not none, that execute with the lowest of them.
+    std::uint32_t first_vector(std::uint32_t lanes) const {
+        const std::uint32_t vector = ~std::uint32_t{0} >> (traces::warp_lanes - simd_width_);
+        return lanes & vector << (static_cast<unsigned>(std::countr_zero(lanes)) & ~(simd_width_ - 1));
+    }
+
     /// Counts ray starts up to the next access; false if there is none.
     static bool advance_to_access(Warp& warp, Hierarchy& memory) {
         for (; warp.next != warp.end; ++warp.next) {
-            if (warp.next->is_access()) return true;
+            if (warp.next->is_access()) {
+                warp.left = warp.next->mask;
+                return true;
+            }
             memory.add_rays(*warp.next);
         }
         return false;
     }
 
-    unsigned number_, warps_per_cta_, l1_per_sm_;
+    unsigned number_, warps_per_cta_, l1_per_sm_, simd_width_;
     std::vector<Warp> active_;          ///< unfinished warps by slot
     std::vector<WarpPointer> traces_;   ///< by slot: keeps the records of an unfinished warp
     std::size_t turn_ = 0;              ///< place in active_ of the next to issue; its size means 0

@@ -8,9 +8,15 @@
 // round, the one whose turn is earlier gets the earlier CTA. Resident warps of an SM take turns too (loose
 // round-robin): after warp slot s comes the next unfinished warp in slot order, slot 0 after the last. Warp slot =
 // CTA slot * warps_per_cta + place in the CTA; it reads through L1 number (warp slot mod l1_per_sm) of its SM.
+// Gpu::scheduler is not asked: "greedy" means as long as a warp is ready, and without time every warp always is, so one
+// warp would run to its end before the next begins. A real one stalls at every access.
+//
+// Where Gpu::simd_width is w < 32, lanes [0, w), [w, 2w), … of a record are a warp access each, in consecutive turns of
+// the warp; those without active lanes take no turn.
 //
 // Ray starts cost no turn. Warps without an access take no turn, CTAs without one no slot. What a warp access misses in
-// L1 goes to L2 at once, sector by sector; what misses there is read from DRAM.
+// L1 goes to the next level at once, line by line and with what Fill adds; what misses in the last is read from DRAM.
+// The last level is one for all SMs; one in between belongs to an SM.
 #pragma once
 
 #include <cstdint>

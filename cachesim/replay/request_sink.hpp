@@ -4,6 +4,7 @@
 // different SMs come in batches, an SM at a time: their order says nothing.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "traces/header.hpp"
@@ -16,8 +17,8 @@ struct ServedRequest {
     std::uint64_t address = 0;  ///< of the line's first byte
     std::uint32_t asked = 0;    ///< bit s = sector s of the line was asked for; never 0
     std::uint32_t missing = 0;  ///< those of `asked` that were not there
-    std::uint32_t sm = 0;       ///< whose L1; 0 for L2
-    std::uint32_t cache = 0;    ///< which L1 of the SM; 0 for L2
+    std::uint32_t sm = 0;       ///< whose cache; 0 for the level that all share
+    std::uint32_t cache = 0;    ///< which L1 of the SM; 0 for the levels below
     traces::RayType ray = {};   ///< of the warp access, as are the next two
     std::uint8_t bounce = 0;
     traces::ObjectKind kind = {};
@@ -35,10 +36,9 @@ class RequestSink {
 public:
     virtual ~RequestSink() = default;
 
-    virtual bool wants_l1(std::uint32_t sm) const = 0;  ///< whether to hear of the L1s of this SM
-    virtual bool wants_l2() const = 0;
-    virtual void l1(const ServedRequest&) = 0;
-    virtual void l2(const ServedRequest&) = 0;
+    /// Whether to hear of the caches of Gpu::levels[level] that belong to this SM, 0 for those that all share.
+    virtual bool wants(std::size_t level, std::uint32_t sm) const = 0;
+    virtual void served(std::size_t level, const ServedRequest&) = 0;
 
     /// Comes once for every warp access, on whichever SM, before its look-ups.
     virtual void issued(const IssuedAccess&) {}

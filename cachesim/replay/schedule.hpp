@@ -1,10 +1,11 @@
 // Which SM issues when: all SMs in turn, one warp access each and round after round, without simulating them in turn.
 //
 // A cache never decides who issues next, so an SM may run many rounds of a window before the next SM does, and finds
-// its warps and L1s in the caches of the machine that simulates it. Two things tie SMs together. L2 sees them in turn:
-// Hierarchy collects what they ask of it until the window ends. And CTAs go to slots in the order in which these become
-// free: an SM that frees a slot waits for its next CTA, and no SM after it in turn runs beyond that round meanwhile. So
-// SMs before it are as far as it is or further, SMs after it are not, and the accesses of each round come in turn.
+// its warps and L1s in the caches of the machine that simulates it. Two things tie SMs together. The shared level sees
+// them in turn: Hierarchy collects what they ask of it until the window ends. And CTAs go to slots in the order in
+// which these become free: an SM that frees a slot waits for its next CTA, and no SM after it in turn runs beyond that
+// round meanwhile. So SMs before it are as far as it is or further, SMs after it are not, and the accesses of each
+// round come in turn.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +33,7 @@ class Schedule {
 public:
     Schedule(const Gpu& gpu, unsigned cta_slots, Hierarchy& memory)
         : memory_(memory), reached_(gpu.sms), waits_(gpu.sms) {
-        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(sm, cta_slots, gpu.warps_per_cta, gpu.l1_per_sm);
+        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(sm, cta_slots, gpu);
     }
 
     /// Makes a CTA resident before its SM runs on, at first before any does.

@@ -7,10 +7,14 @@ Counters& Counters::operator+=(const Counters& other) {
     steps += other.steps;
     lane_accesses += other.lane_accesses;
     warp_accesses += other.warp_accesses;
+    loads += other.loads;
+    l1_requests += other.l1_requests;
     sectors += other.sectors;
     l1_hits += other.l1_hits;
     l2_sectors += other.l2_sectors;
     l2_hits += other.l2_hits;
+    l3_sectors += other.l3_sectors;
+    l3_hits += other.l3_hits;
     dram_sectors += other.dram_sectors;
     return *this;
 }

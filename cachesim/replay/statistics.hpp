@@ -15,12 +15,20 @@ struct Counters {
     std::uint64_t rays = 0;           ///< ray starts, one per lane (0 in groups split by object kind)
     std::uint64_t steps = 0;          ///< lane accesses to nodes and triangles
     std::uint64_t lane_accesses = 0;  ///< lane accesses to anything
-    std::uint64_t warp_accesses = 0;  ///< access records
-    std::uint64_t sectors = 0;        ///< 32 B sectors looked up in L1, after coalescing
+    std::uint64_t warp_accesses = 0;  ///< access records; of a narrower machine: vectors
+    std::uint64_t loads = 0;          ///< load instructions that the warp accesses are: LoadCounter
+    std::uint64_t l1_requests = 0;    ///< sectors that these ask the tag stage for
+    std::uint64_t sectors = 0;        ///< distinct sectors of each warp access: those looked up in L1
     std::uint64_t l1_hits = 0;        ///< of those, found (a sector on its way counts as found)
-    std::uint64_t l2_sectors = 0;     ///< sectors asked of L2 = sectors - l1_hits
+    /// Sectors asked of L2: those missing in L1, and those fetched beside them where the L1 fills more than a sector.
+    std::uint64_t l2_sectors = 0;
     std::uint64_t l2_hits = 0;
-    std::uint64_t dram_sectors = 0;  ///< 32 B sectors read from DRAM = l2_sectors - l2_hits
+    std::uint64_t l3_sectors = 0;  ///< sectors asked of L3, likewise; 0 where there is none
+    std::uint64_t l3_hits = 0;
+    std::uint64_t dram_sectors = 0;  ///< sectors read from DRAM, those fetched beside the missing ones included
+
+    /// Requests of single loads that L1 answers: only the first request for a sector in a warp access can miss.
+    std::uint64_t l1_request_hits() const { return l1_requests - (sectors - l1_hits); }
 
     Counters& operator+=(const Counters&);
     bool operator==(const Counters&) const = default;

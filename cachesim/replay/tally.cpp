@@ -2,7 +2,30 @@
 
 namespace raycache::cachesim {
 
-std::vector<RayGroup> Tally::groups() const {
+Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t levels) const {
+    struct Fields {
+        std::uint64_t Counters::*asked, Counters::*found;
+    };
+    static constexpr Fields fields[most_levels] = {{&Counters::sectors, &Counters::l1_hits},
+                                                   {&Counters::l2_sectors, &Counters::l2_hits},
+                                                   {&Counters::l3_sectors, &Counters::l3_hits}};
+    Counters c;
+    c.lane_accesses = sums.lane_accesses;
+    c.warp_accesses = sums.warp_accesses;
+    c.loads = sums.loads;
+    c.l1_requests = sums.requests;
+    if (kind == traces::ObjectKind::node || kind == traces::ObjectKind::triangle) c.steps = sums.lane_accesses;
+    std::uint64_t asked = sums.sectors;
+    for (std::size_t level = 0; level < levels; ++level) {
+        c.*fields[level].asked = asked;
+        c.*fields[level].found = asked - (sums.fetched[level] - sums.unasked[level]);
+        asked = sums.fetched[level];
+    }
+    c.dram_sectors = asked;
+    return c;
+}
+
+std::vector<RayGroup> Tally::groups(std::size_t levels) const {
     std::vector<RayGroup> result;
     for (unsigned ray = 0; ray < traces::ray_types; ++ray) {
         for (unsigned bounce = 0; bounce <= traces::max_bounce; ++bounce) {
@@ -12,14 +35,9 @@ std::vector<RayGroup> Tally::groups() const {
             group.ray = static_cast<traces::RayType>(ray);
             group.bounce = static_cast<std::uint8_t>(bounce);
             for (unsigned kind = 0; kind < traces::object_kinds; ++kind) {
-                Counters& c = group.by_kind[kind] = counters_[first + kind];
-                group.rays += c.rays;
-                c.rays = 0;
-                const auto object = static_cast<traces::ObjectKind>(kind);
-                const bool step = object == traces::ObjectKind::node || object == traces::ObjectKind::triangle;
-                c.steps = step ? c.lane_accesses : 0;
-                c.l1_hits = c.sectors - c.l2_sectors;
-                c.l2_hits = c.l2_sectors - c.dram_sectors;
+                const Sums& sums = sums_[first + kind];
+                group.by_kind[kind] = counters(sums, static_cast<traces::ObjectKind>(kind), levels);
+                group.rays += sums.rays;
             }
             result.push_back(group);
         }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cachesim/cache/request.hpp"
-#include "cachesim/frontend/coalesce.hpp"
+#include "cachesim/frontend/load_counter.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "traces/record.hpp"
 
@@ -30,8 +30,8 @@ public:
         std::uint16_t& first =
             first_group_[static_cast<unsigned>(record.ray) * (traces::max_bounce + 1) + record.bounce];
         if (first == absent) [[unlikely]] {
-            first = static_cast<std::uint16_t>(counters_.size());
-            counters_.resize(counters_.size() + traces::object_kinds);
+            first = static_cast<std::uint16_t>(sums_.size());
+            sums_.resize(sums_.size() + traces::object_kinds);
             for (unsigned k = 0; k < traces::object_kinds; ++k)
                 keys_.push_back({record.ray, record.bounce, static_cast<traces::ObjectKind>(k)});
         }
@@ -41,35 +41,47 @@ public:
     GroupKey key(std::uint16_t group) const { return keys_[group]; }
 
     /// A ray-start record.
-    void add_rays(const traces::Record& record) {
-        counters_[group(record, traces::ObjectKind{})].rays += record.lanes();
-    }
+    void add_rays(const traces::Record& record) { sums_[group(record, traces::ObjectKind{})].rays += record.lanes(); }
 
     /// A warp access of `lanes` lanes and what the front end made of it.
-    void add_access(std::uint16_t group, unsigned lanes, unsigned sectors) {
-        Counters& counters = counters_[group];
-        counters.lane_accesses += lanes;
-        counters.warp_accesses += 1;
-        counters.sectors += sectors;
+    void add_access(std::uint16_t group, unsigned lanes, unsigned sectors, LoadCount loads) {
+        Sums& sums = sums_[group];
+        sums.lane_accesses += lanes;
+        sums.warp_accesses += 1;
+        sums.loads += loads.loads;
+        sums.requests += loads.requests;
+        sums.sectors += sectors;
     }
 
-    void add_l2(std::span<const Request> asked) {
-        for (const Request& r : asked) counters_[r.group].l2_sectors += static_cast<unsigned>(std::popcount(r.sectors));
+    /// What level number `level`, from 0, fetches from below.
+    void add_fetched(std::size_t level, std::span<const Request> fetched) {
+        for (const Request& r : fetched)
+            sums_[r.group].fetched[level] += static_cast<unsigned>(std::popcount(r.sectors));
     }
 
-    void add_dram(std::span<const Request> asked) {
-        for (const Request& r : asked)
-            counters_[r.group].dram_sectors += static_cast<unsigned>(std::popcount(r.sectors));
+    /// Of what a level fetched for requests of these sectors, that which nobody had asked for.
+    void add_unasked(std::size_t level, std::span<const Request> fetched, std::span<const std::uint32_t> asked) {
+        for (std::size_t i = 0; i < fetched.size(); ++i)
+            sums_[fetched[i].group].unasked[level] +=
+                static_cast<unsigned>(std::popcount(fetched[i].sectors & ~asked[i]));
     }
 
-    /// The groups in order of ray type and bounce, with steps and hits filled in.
-    std::vector<RayGroup> groups() const;
+    /// The groups in order of ray type and bounce. `levels`: how many there are above DRAM.
+    std::vector<RayGroup> groups(std::size_t levels) const;
 
 private:
+    static constexpr std::size_t most_levels = 3;
+    /// Counters, as far as they do not follow from others.
+    struct Sums {
+        std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, loads = 0, requests = 0, sectors = 0;
+        std::array<std::uint64_t, most_levels> fetched{}, unasked{};  ///< sectors, by level
+    };
+    Counters counters(const Sums&, traces::ObjectKind, std::size_t levels) const;
+
     static constexpr std::uint16_t absent = 0xffff;
     std::array<std::uint16_t, traces::ray_types*(traces::max_bounce + 1)> first_group_{};
-    std::vector<Counters> counters_;  ///< object_kinds per (ray type, bounce); rays stand in the first of them
-    std::vector<GroupKey> keys_;      ///< of each of them
+    std::vector<Sums> sums_;      ///< object_kinds per (ray type, bounce); rays stand in the first of them
+    std::vector<GroupKey> keys_;  ///< of each of them
 };
 
 }  // namespace raycache::cachesim

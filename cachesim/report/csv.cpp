@@ -37,18 +37,25 @@ private:
     bool first_ = true;
 };
 
+/// The last columns are there only if some GPU has an L3.
+constexpr const char* l3_header =
+    ",l3_sectors,l3_hits,l3_hit_rate,l3_hit_rate_ci95,l3_bytes_per_ray,l3_bytes_per_ray_ci95,l3_locality";
 constexpr const char* header =
     "scene,strategy,sequence,parameters,thread_map,gpu,group,spp,samples,total_rays,steps,lane_accesses,warp_accesses,"
-    "sectors,l1_hits,l2_sectors,l2_hits,dram_sectors,rays,rays_ci95,steps_per_ray,steps_per_ray_ci95,active_lanes,"
-    "active_lanes_ci95,sectors_per_access,sectors_per_access_ci95,l1_hit_rate,l1_hit_rate_ci95,l2_hit_rate,"
-    "l2_hit_rate_ci95,l2_bytes_per_ray,l2_bytes_per_ray_ci95,dram_bytes_per_ray,dram_bytes_per_ray_ci95,l2_bytes_ratio,"
+    "loads,l1_requests,sectors,l1_hits,l2_sectors,l2_hits,dram_sectors,rays,rays_ci95,steps_per_ray,steps_per_ray_ci95,"
+    "active_lanes,"
+    "active_lanes_ci95,sectors_per_access,sectors_per_access_ci95,l1_hit_rate,l1_hit_rate_ci95,"
+    "l1_request_hit_rate,l1_request_hit_rate_ci95,l2_hit_rate,l2_hit_rate_ci95,l2_bytes_per_ray,l2_bytes_per_ray_ci95,"
+    "dram_bytes_per_ray,dram_bytes_per_ray_ci95,l2_bytes_ratio,"
     "l2_bytes_ratio_ci95,dram_bytes_ratio,dram_bytes_ratio_ci95,work,simt_efficiency,coalescing,l1_locality,l2_"
-    "locality\n";
+    "locality";
 
 }  // namespace
 
 std::string to_csv(const Report& report) {
     std::string csv = header;
+    if (report.has_l3()) csv += l3_header;
+    csv += '\n';
     for (const Row& row : report.rows) {
         Line line;
         for (const auto* name :
@@ -60,18 +67,26 @@ std::string to_csv(const Report& report) {
             samples += fmt::format("{}{}", samples.empty() ? "" : " ", sample);
         line.text(samples);
         const Counters& c = row.totals;
-        for (const std::uint64_t count : {c.rays, c.steps, c.lane_accesses, c.warp_accesses, c.sectors, c.l1_hits,
-                                          c.l2_sectors, c.l2_hits, c.dram_sectors})
+        for (const std::uint64_t count : {c.rays, c.steps, c.lane_accesses, c.warp_accesses, c.loads, c.l1_requests,
+                                          c.sectors, c.l1_hits, c.l2_sectors, c.l2_hits, c.dram_sectors})
             line.number(count);
-        for (const Estimate* e : {&row.rays, &row.steps_per_ray, &row.active_lanes, &row.sectors_per_access,
-                                  &row.l1_hit_rate, &row.l2_hit_rate, &row.l2_bytes_per_ray, &row.dram_bytes_per_ray})
+        for (const Estimate* e :
+             {&row.rays, &row.steps_per_ray, &row.active_lanes, &row.sectors_per_access, &row.l1_hit_rate,
+              &row.l1_request_hit_rate, &row.l2_hit_rate, &row.l2_bytes_per_ray, &row.dram_bytes_per_ray})
             line.estimate(*e);
         line.estimate(row.l2_bytes_ratio);
         line.estimate(row.dram_bytes_ratio);
         const double none = std::nan("");
-        const Factors f = row.factors.value_or(Factors{none, none, none, none, none});
+        const Factors f = row.factors.value_or(Factors{none, none, none, none, none, none});
         for (const double value : {f.work, f.simt_efficiency, f.coalescing, f.l1_locality, f.l2_locality})
             line.number(value);
+        if (report.has_l3()) {
+            line.number(c.l3_sectors);
+            line.number(c.l3_hits);
+            line.estimate(row.l3_hit_rate);
+            line.estimate(row.l3_bytes_per_ray);
+            line.number(row.levels == 3 ? f.l3_locality : none);
+        }
         csv += line.end();
     }
     return csv;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cachesim/analysis/findings.hpp"
+#include "cachesim/analysis/speed_up.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "cachesim/report/report.hpp"
 
@@ -27,13 +28,15 @@ struct Explanation {
     std::uint32_t sector_bytes = 32;
     GroupBy by = GroupBy::none;  ///< how the identity is cut; not by object
     ExplainedTrace base, other;  ///< of the same sample indices
+    /// The timed replays of idealised_replays(); empty if the GPU has no [timing].
+    std::vector<SpeedUp> speed_ups;
 };
 
 /// Readable in 110 columns.
 std::string to_text(const Explanation&);
 std::string to_json(const Explanation&);
 
-/// The finding in one sentence, made from the numbers. It speaks of bytes; nothing here knows time.
+/// The finding about bytes in one sentence, made from the numbers. That about time: sentence(speed_ups).
 std::string sentence(const Explanation&);
 
 /// DRAM bytes per ray, or L2-to-L1 bytes, of `other` over those of `base`, paired by sample index.

@@ -103,7 +103,13 @@ std::string to_json(const Explanation& e) {
     json["groups"] = groups(e);
     json["base"] = trace(e.base);
     json["other"] = trace(e.other);
+    for (const SpeedUp& s : e.speed_ups)
+        json["timed"].push_back({{"replay", s.replay.name},
+                                 {"base_cycles", s.base.cycles},
+                                 {"other_cycles", s.other.cycles},
+                                 {"speed_up", s.value()}});
     json["sentence"] = sentence(e);
+    if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
     // A name that is no UTF-8 shows U+FFFD instead of ending the program.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <tuple>
 
@@ -15,24 +16,26 @@ namespace raycache::cachesim {
 
 namespace {
 
-using Member = std::uint64_t Counters::*;
+/// A member of Counters, or a function of them.
+using Figure = std::function<std::uint64_t(const Counters&)>;
 
 /// A row with what its estimates are made of.
 struct Draft {
     Row row;
     std::vector<Counters> by_launch;
-    double sector_bytes = 32;
+    std::uint32_t sector_bytes = 32;
 
-    /// Per sample index; a null member counts 1.
-    Sums sums(Member y, Member x, double scale = 1) const {
+    /// Per sample index; no figure counts 1.
+    Sums sums(const Figure& y, const Figure& x, double scale = 1) const {
         Sums s;
         for (const Counters& c : by_launch) {
-            s.y.push_back(scale * static_cast<double>(c.*y));
-            s.x.push_back(x ? static_cast<double>(c.*x) : 1.0);
+            s.y.push_back(scale * static_cast<double>(y(c)));
+            s.x.push_back(x ? static_cast<double>(x(c)) : 1.0);
         }
         return s;
     }
     Sums l2_bytes() const { return sums(&Counters::l2_sectors, &Counters::rays, sector_bytes); }
+    Sums l3_bytes() const { return sums(&Counters::l3_sectors, &Counters::rays, sector_bytes); }
     Sums dram_bytes() const { return sums(&Counters::dram_sectors, &Counters::rays, sector_bytes); }
 
     auto key() const { return std::tie(row.scene, row.sequence, row.spp, row.thread_map, row.gpu, row.group); }
@@ -51,7 +54,8 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     row.spp = series.spp;
     for (const LaunchStatistics& launch : series.launches) row.samples.push_back(launch.sample);
     draft.by_launch = group.by_launch;
-    draft.sector_bytes = series.sector_bytes;
+    draft.sector_bytes = row.sector_bytes = series.sector_bytes;
+    row.levels = series.levels;
     for (const Counters& c : group.by_launch) row.totals += c;
 
     row.rays = ratio_of_totals(draft.sums(&Counters::rays, nullptr));
@@ -59,25 +63,31 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     row.active_lanes = ratio_of_totals(draft.sums(&Counters::lane_accesses, &Counters::warp_accesses));
     row.sectors_per_access = ratio_of_totals(draft.sums(&Counters::sectors, &Counters::warp_accesses));
     row.l1_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_hits, &Counters::sectors));
+    row.l1_request_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_request_hits, &Counters::l1_requests));
     row.l2_hit_rate = ratio_of_totals(draft.sums(&Counters::l2_hits, &Counters::l2_sectors));
     row.l2_bytes_per_ray = ratio_of_totals(draft.l2_bytes());
     row.dram_bytes_per_ray = ratio_of_totals(draft.dram_bytes());
+    if (row.levels < 3) return draft;
+    row.l3_hit_rate = ratio_of_totals(draft.sums(&Counters::l3_hits, &Counters::l3_sectors));
+    row.l3_bytes_per_ray = ratio_of_totals(draft.l3_bytes());
     return draft;
 }
 
 /// (y/x of own totals) / (y/x of the baseline's).
-double factor(const Counters& own, const Counters& base, Member y, Member x) {
+double factor(const Counters& own, const Counters& base, std::uint64_t Counters::*y, std::uint64_t Counters::*x) {
     const auto ratio = [&](const Counters& c) { return static_cast<double>(c.*y) / static_cast<double>(c.*x); };
     return ratio(own) / ratio(base);
 }
 
 /// None where a quotient has no value: nothing was read, or nothing missed.
-std::optional<Factors> factors(const Counters& own, const Counters& base) {
+std::optional<Factors> factors(const Counters& own, const Counters& base, std::size_t levels) {
+    const auto below_l2 = levels == 3 ? &Counters::l3_sectors : &Counters::dram_sectors;
     const Factors f{factor(own, base, &Counters::steps, &Counters::rays),
                     factor(own, base, &Counters::warp_accesses, &Counters::steps),
                     factor(own, base, &Counters::sectors, &Counters::warp_accesses),
                     factor(own, base, &Counters::l2_sectors, &Counters::sectors),
-                    factor(own, base, &Counters::dram_sectors, &Counters::l2_sectors)};
+                    factor(own, base, below_l2, &Counters::l2_sectors),
+                    levels == 3 ? factor(own, base, &Counters::dram_sectors, &Counters::l3_sectors) : 1};
     return std::isfinite(f.product()) ? std::optional(f) : std::nullopt;
 }
 
@@ -118,10 +128,14 @@ void compare(Draft& draft, const std::vector<Draft>& drafts, const std::string& 
     }
     row.l2_bytes_ratio = ratio_to_baseline(draft.l2_bytes(), base->l2_bytes());
     row.dram_bytes_ratio = ratio_to_baseline(draft.dram_bytes(), base->dram_bytes());
-    row.factors = factors(row.totals, base->row.totals);
+    row.factors = factors(row.totals, base->row.totals, row.levels);
 }
 
 }  // namespace
+
+bool Report::has_l3() const {
+    return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.levels == 3; });
+}
 
 Report make_report(const std::vector<Series>& all_series, const std::string& baseline, GroupBy by) {
     Report report;

@@ -16,6 +16,7 @@ struct Series {
     std::string scene, strategy, sequence, parameters, thread_map, gpu;
     std::uint64_t spp = 0;
     std::uint32_t sector_bytes = 32;         ///< of the GPU's caches: turns sectors into bytes
+    std::size_t levels = 2;                  ///< of the GPU's caches: 2 or 3
     std::vector<LaunchStatistics> launches;  ///< one per sample index, ascending
 };
 
@@ -29,12 +30,14 @@ struct Estimate {
     std::optional<double> half_width;
 };
 
-/// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B.
-/// Each factor is this strategy's over the baseline's; their product is the ratio of DRAM bytes/ray exactly, computed
-/// from totals over all sample indices.
+/// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B, with
+/// x L3 miss rate where there is an L3, and the GPU's own sector size. A level's miss rate is what it fetches over what
+/// it is asked for. Each factor is this strategy's over the baseline's; their product is the ratio of DRAM bytes/ray
+/// exactly, computed from totals over all sample indices.
 struct Factors {
     double work = 1, simt_efficiency = 1, coalescing = 1, l1_locality = 1, l2_locality = 1;
-    double product() const { return work * simt_efficiency * coalescing * l1_locality * l2_locality; }
+    double l3_locality = 1;  ///< 1 where there is no L3
+    double product() const { return work * simt_efficiency * coalescing * l1_locality * l2_locality * l3_locality; }
 };
 
 enum class GroupBy { none, bounce, ray, object };  ///< ray: camera, bounce, shadow; object: node, triangle, texel
@@ -43,10 +46,15 @@ struct Row {
     std::string scene, strategy, sequence, parameters, thread_map, gpu,
         group;  ///< group: "all", "bounce 1", "shadow 0", "node"
     std::uint64_t spp = 0;
+    std::uint32_t sector_bytes = 32;
+    std::size_t levels = 2;
     std::vector<std::uint32_t> samples;
     Counters totals;  ///< over all sample indices; in groups by object, `rays` are those of the whole launch
     Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
         dram_bytes_per_ray;
+    /// As profilers count: every load asks for its sectors, so most requests of a visit hit (LoadCounter).
+    Estimate l1_request_hit_rate;
+    std::optional<Estimate> l3_hit_rate, l3_bytes_per_ray;  ///< bytes that L2 asks of L3; absent where there is no L3
     /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline
     /// itself or where there is none or its sample indices differ (a note says so).
     std::optional<Estimate> l2_bytes_ratio, dram_bytes_ratio;
@@ -58,6 +66,9 @@ struct Report {
     GroupBy by = GroupBy::none;
     std::vector<Row> rows;
     std::vector<std::string> notes;  ///< such as "no baseline row for …", "one sample index: no confidence interval"
+
+    /// Whether any row's GPU has an L3: only then do tables show what concerns it.
+    bool has_l3() const;
 };
 
 /// Throws UsageError if `baseline` was given by the user but is in no series.
@@ -66,5 +77,9 @@ Report make_report(const std::vector<Series>&, const std::string& baseline, Grou
 std::string to_text(const Report&);
 std::string to_json(const Report&);
 std::string to_csv(const Report&);
+
+/// The totals of every row under the names of Nsight Compute's metrics, to be laid beside a profile. All GPUs must have
+/// two levels.
+std::string to_profiler_text(const Report&);
 
 }  // namespace raycache::cachesim

@@ -89,7 +89,9 @@ std::string main_table(const Report& report, std::vector<Column> columns) {
     figure("sectors/acc", [](const Row& r) { return decimals(r.sectors_per_access.mean, 2); });
     figure("L1 %", [](const Row& r) { return percent(r.l1_hit_rate); });
     figure("L2 %", [](const Row& r) { return percent(r.l2_hit_rate); });
+    if (report.has_l3()) figure("L3 %", [](const Row& r) { return r.l3_hit_rate ? percent(*r.l3_hit_rate) : "-"; });
     figure("L2->L1 B/ray", [](const Row& r) { return with_interval(r.l2_bytes_per_ray); });
+    if (report.has_l3()) figure("L3->L2 B/ray", [](const Row& r) { return with_interval(r.l3_bytes_per_ray); });
     figure("DRAM B/ray", [](const Row& r) { return with_interval(r.dram_bytes_per_ray); });
     if (!report.baseline.empty())
         figure("DRAM ratio", [&](const Row& r) {
@@ -110,6 +112,9 @@ std::string factor_table(const Report& report, std::vector<Column> columns) {
     figure("x L1 locality", [](const Factors& f) { return f.l1_locality; });
     columns.push_back({"= L2->L1 ratio", Align::right, [](const Row& r) { return with_interval(r.l2_bytes_ratio); }});
     figure("x L2 locality", [](const Factors& f) { return f.l2_locality; });
+    if (report.has_l3())
+        columns.push_back({"x L3 locality", Align::right,
+                           [](const Row& r) { return r.levels == 3 ? decimals(r.factors->l3_locality, 3) : "-"; }});
     columns.push_back({"= DRAM ratio", Align::right, [](const Row& r) { return with_interval(r.dram_bytes_ratio); }});
     std::vector<const Row*> rows;
     for (const Row& row : report.rows)
@@ -117,9 +122,11 @@ std::string factor_table(const Report& report, std::vector<Column> columns) {
     if (rows.empty()) return {};
     return fmt::format("\nWhere the ratios to {} come from; below 1 is better\n\n", report.baseline) +
            table(columns, rows) +
-           "\nwork: steps/ray; SIMT efficiency: warp accesses/step; coalescing: sectors/warp access; L1, L2 locality: "
-           "miss "
-           "rates; each over the baseline's.\n";
+           fmt::format(
+               "\nwork: steps/ray; SIMT efficiency: warp accesses/step; coalescing: sectors/warp access; {} locality: "
+               "miss "
+               "rates; each over the baseline's.\n",
+               report.has_l3() ? "L1, L2, L3" : "L1, L2");
 }
 
 }  // namespace
@@ -127,10 +134,10 @@ std::string factor_table(const Report& report, std::vector<Column> columns) {
 std::string to_text(const Report& report) {
     const std::vector<Column> columns = identity_columns(report);
     std::string text = main_table(report, columns);
-    text +=
-        "\nrays: all sample indices together; step: one lane's visit to a node or triangle; acc: warp access; L1 %, L2 "
-        "%: "
-        "sectors found;\nB/ray: bytes read; ±: 95 % confidence over sample indices";
+    text += fmt::format(
+        "\nrays: all sample indices together; step: one lane's visit to a node or triangle; acc: warp access; "
+        "{}: sectors found;\nB/ray: bytes read; ±: 95 % confidence over sample indices",
+        report.has_l3() ? "L1 %, L2 %, L3 %" : "L1 %, L2 %");
     text +=
         report.baseline.empty() ? ".\n" : fmt::format("; DRAM ratio: DRAM B/ray over that of {}.\n", report.baseline);
     text += factor_table(report, columns);

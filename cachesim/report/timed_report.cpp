@@ -26,32 +26,9 @@ constexpr Named resources[] = {{"issue", &TimedStatistics::issue},
                                {"L2 slices", &TimedStatistics::l2_slices},
                                {"DRAM", &TimedStatistics::dram}};
 
-void add(LevelAnswers& sum, const LevelAnswers& a) {
-    sum.hits += a.hits;
-    sum.merges += a.merges;
-    sum.line_misses += a.line_misses;
-    sum.sector_misses += a.sector_misses;
-}
-
 TimedStatistics sum_of(const std::vector<TimedStatistics>& launches) {
     TimedStatistics sum;
-    for (const TimedStatistics& t : launches) {
-        sum.cycles += t.cycles;
-        sum.seconds += t.seconds;
-        sum.rays += t.rays;
-        sum.warp_accesses += t.warp_accesses;
-        sum.lane_accesses += t.lane_accesses;
-        sum.instructions += t.instructions;
-        sum.loads += t.loads;
-        add(sum.l1, t.l1);
-        add(sum.l2, t.l2);
-        sum.dram_sectors += t.dram_sectors;
-        sum.visit_cycles += t.visit_cycles;
-        for (const Named& r : resources) {
-            (sum.*r.resource).busy += (t.*r.resource).busy;
-            (sum.*r.resource).copies = (t.*r.resource).copies;
-        }
-    }
+    for (const TimedStatistics& launch : launches) sum += launch;
     return sum;
 }
 

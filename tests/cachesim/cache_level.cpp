@@ -104,32 +104,6 @@ TEST_CASE("with the same sets, more ways never miss more under LRU") {
     }
 }
 
-TEST_CASE("the set is the documented one for every number of sets and every line") {
-    std::mt19937_64 random(5);
-    for (const std::uint64_t sets :
-         {1ull, 2ull, 3ull, 4ull, 36ull, 48ull, 80ull, 1536ull, 20480ull, 65536ull, (1ull << 32) - 5, (1ull << 33)})
-        for (const auto index : {SetIndex::modulo, SetIndex::xor_fold}) {
-            const CacheGeometry g = geometry(sets, 1, index);
-            const LineMap indexer(g);
-            for (int i = 0; i < 300; ++i) {
-                const std::uint64_t line = random() >> random() % 64;
-                REQUIRE(indexer(line) == naive_set(g, line));
-            }
-            for (const std::uint64_t line : {std::uint64_t{0}, sets - 1, sets, ~std::uint64_t{0}})
-                REQUIRE(indexer(line) == naive_set(g, line));
-        }
-}
-
-TEST_CASE("the folded index spreads lines of equal low bits over all sets") {
-    const LineMap fold(geometry(64, 1, SetIndex::xor_fold)), modulo(geometry(64, 1));
-    std::vector<int> uses(64);
-    for (std::uint64_t i = 0; i < 64; ++i) {
-        ++uses[fold(i * 64)];
-        CHECK(modulo(i * 64) == 0);
-    }
-    CHECK(std::all_of(uses.begin(), uses.end(), [](int n) { return n == 1; }));
-}
-
 TEST_CASE("an unknown replacement policy is refused by name") {
     CacheGeometry g = geometry(1, 1);
     g.policy = "clairvoyant";

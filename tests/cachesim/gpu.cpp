@@ -79,7 +79,7 @@ TEST_CASE("every preset loads under its file name, with a source beside every nu
         CAPTURE(preset.name);
         CHECK(load_gpu(preset.name).name == preset.name);
         const auto values = gpu_values(preset.name);
-        CHECK(values.size() == 16);
+        CHECK(values.size() >= 16);
         for (const GpuValue& value : values) {
             CAPTURE(value.key);
             CHECK_FALSE(value.value.empty());
@@ -102,7 +102,7 @@ TEST_CASE("every preset has the SMs and capacities of the table of known GPUs") 
                            {"rtx-2060", 30, 1, 64, 3, 12, 32},    {"rtx-2080-ti", 68, 1, 64, 5.5, 12, 32},
                            {"rtx-3070", 46, 1, 128, 4, 12, 48},   {"rtx-3090", 82, 1, 128, 6, 12, 48},
                            {"rtx-4090", 128, 1, 128, 72, 12, 48}, {"titan-x-pascal", 28, 1, 48, 3, 40, 64},
-                           {"v100", 80, 1, 128, 6, 12, 64}};
+                           {"v100", 80, 1, 128, 6, 12, 64},       {"xeon-8380", 40, 1, 48, 1.25, 2, 2}};
     CHECK(gpu_presets().size() == std::size(table));
     for (const Known& known : table) {
         CAPTURE(known.name);
@@ -113,9 +113,41 @@ TEST_CASE("every preset has the SMs and capacities of the table of known GPUs") 
         CHECK(static_cast<double>(gpu.levels[1].bytes()) == known.l2_mib * 1024 * 1024);
         CHECK(gpu.warps_per_sm == known.warps_per_sm);
         CHECK(gpu.warps_per_sm <= known.most_warps_per_sm);
-        CHECK(gpu.levels[0].line_bytes == 128);
-        CHECK(gpu.levels[0].sector_bytes == 32);
+        const bool cpu = gpu.levels.size() == 3;
+        CHECK(gpu.levels[0].line_bytes == (cpu ? 64 : 128));
+        CHECK(gpu.levels[0].sector_bytes == (cpu ? 64 : 32));
+        CHECK(gpu.simd_width == (cpu ? 8 : 32));
+        if (cpu) CHECK(gpu.levels[2].bytes() == 60 * 1024 * 1024);
     }
+}
+
+TEST_CASE("a third level is read like the others, and only its absence is no error") {
+    const std::string third = R"([l3]
+sets = 7
+ways = 2
+line_bytes = 128
+sector_bytes = 32
+index = "modulo"
+policy = "random"
+seed = 9
+slices = 3
+fill_bytes = 64
+)";
+    const Gpu gpu = parse_gpu("simd_width = 8\n" + good + third, "f.toml");
+    REQUIRE(gpu.levels.size() == 3);
+    CHECK(gpu.simd_width == 8);
+    CHECK(gpu.levels[2].policy == "random");
+    CHECK(gpu.levels[2].seed == 9);
+    CHECK(gpu.levels[2].slices == 3);
+    CHECK(gpu.levels[2].fill_bytes == 64);
+    CHECK(gpu.levels[2].bytes() == 3 * 7 * 2 * 128);
+    using Catch::StartsWith;
+    CHECK_THAT(error("sms = 2\n", "sms = 2\nsimd_width = 12\n"), StartsWith("f.toml:4: simd_width: expected 1, 2, 4"));
+    CHECK_THAT(error("\"lru\"\n", "\"lru\"\nfill_bytes = 48\n"),
+               StartsWith("f.toml:14: l1.fill_bytes: expected a power of two, found 48"));
+    CHECK_THAT(error("\"lru\"\n", "\"lru\"\nfill_bytes = 256\n"),
+               StartsWith("f.toml:14: l1.fill_bytes: expected 32 to 128, found 256"));
+    CHECK_THAT(error("\"lru\"\n", "\"random\"\nseed = -1\n"), StartsWith("f.toml:14: l1.seed: expected a whole"));
 }
 
 TEST_CASE("the values of a GPU file come with their sources, and without where the file gives none") {
@@ -164,8 +196,10 @@ TEST_CASE("errors of a GPU file name file, line and key") {
     CHECK_THAT(error(", source = \"made up\"", ""), StartsWith("f.toml:16: l2.ways.source: expected this key"));
     CHECK_THAT(error("\"made up\"", "7"), StartsWith("f.toml:16: l2.ways.source: expected a string"));
     CHECK_THAT(error("\"tiny\"", "\"\""), StartsWith("f.toml:1: name: expected a text"));
-    CHECK_THAT(error("\"modulo\"", "\"mod\""), StartsWith("f.toml:12: l1.index: expected \"modulo\" or"));
-    CHECK_THAT(error("\"lru\"", "\"mru\""), StartsWith("f.toml:13: l1.policy: expected one of: lru"));
+    CHECK_THAT(error("\"modulo\"", "\"mod\""),
+               StartsWith("f.toml:12: l1.index: expected \"modulo\", \"xor_fold\", \"ipoly\" or"));
+    CHECK_THAT(error("\"lru\"", "\"mru\""),
+               StartsWith("f.toml:13: l1.policy: expected one of: fifo, lru, random, tree_plru;"));
 }
 
 TEST_CASE("impossible caches are refused with the line of the value at fault") {

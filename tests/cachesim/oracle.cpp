@@ -1,46 +1,17 @@
 #include "oracle.hpp"
 
 #include <algorithm>
-#include <list>
+#include <bit>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "cachesim/replay/replay.hpp"
+#include "naive_cache.hpp"
 
 namespace raycache::cachesim::test {
 
 namespace {
-
-/// One sectored LRU cache.
-class NaiveCache {
-public:
-    explicit NaiveCache(const CacheGeometry& geometry) : geometry_(geometry) {}
-
-    bool hit(std::uint64_t line, unsigned sector) const {
-        const auto set = sets_.find(naive_set(geometry_, line));
-        if (set == sets_.end()) return false;
-        for (const auto& [tag, sectors] : set->second)
-            if (tag == line) return sectors.count(sector) > 0;
-        return false;
-    }
-
-    void use(std::uint64_t line, const std::set<unsigned>& sectors) {
-        auto& set = sets_[naive_set(geometry_, line)];  // newest first
-        auto entry = std::find_if(set.begin(), set.end(), [&](const auto& e) { return e.first == line; });
-        if (entry == set.end()) {
-            set.push_front({line, {}});
-            if (set.size() > geometry_.ways) set.pop_back();
-        } else {
-            set.splice(set.begin(), set, entry);
-        }
-        set.front().second.insert(sectors.begin(), sectors.end());
-    }
-
-private:
-    CacheGeometry geometry_;
-    std::map<std::uint64_t, std::list<std::pair<std::uint64_t, std::set<unsigned>>>> sets_;
-};
 
 /// Distinct (line, sectors) in order of first touch.
 std::vector<std::pair<std::uint64_t, std::set<unsigned>>> naive_coalesce(const traces::Region& region,
@@ -63,6 +34,7 @@ std::vector<std::pair<std::uint64_t, std::set<unsigned>>> naive_coalesce(const t
 struct Cursor {
     const traces::WarpTrace* warp = nullptr;
     std::size_t record = 0, element = 0;
+    unsigned lane = 0;  ///< of the record: those before it are done
 };
 
 class NaiveReplay {
@@ -73,8 +45,12 @@ public:
           slots_(std::max(1u, gpu.warps_per_sm / gpu.warps_per_cta) * gpu.warps_per_cta),
           resident_(gpu.sms),
           last_(gpu.sms, slots_ - 1),
-          l1_(gpu.sms * gpu.l1_per_sm, NaiveCache(gpu.levels[0])),
-          l2_(gpu.levels[1]) {
+          caches_(gpu.levels.size()) {
+        for (std::size_t level = 0; level < caches_.size(); ++level) {
+            const bool shared = level + 1 == caches_.size();
+            const unsigned caches = shared ? 1 : level == 0 ? gpu.sms * gpu.l1_per_sm : gpu.sms;
+            for (unsigned i = 0; i < caches; ++i) caches_[level].emplace_back(gpu.levels[level], i);
+        }
         for (std::size_t w = 0; w < launch.warps.size(); w += gpu.warps_per_cta) {
             std::vector<const traces::WarpTrace*> cta;
             bool any = false;
@@ -105,7 +81,7 @@ private:
         if (next_cta_ == ctas_.size()) return;
         unsigned slot = first_slot;
         for (const traces::WarpTrace* warp : ctas_[next_cta_++]) {
-            if (!warp->elements.empty()) resident_[sm][slot] = {warp, 0, 0};
+            if (!warp->elements.empty()) resident_[sm][slot] = {warp, 0, 0, 0};
             ++slot;
         }
     }
@@ -118,9 +94,18 @@ private:
         const unsigned slot = last_[sm] = at->first;
         Cursor& c = at->second;
         while (!c.warp->records[c.record].is_access()) ++c.record;
-        access(c.warp->records[c.record], &c.warp->elements[c.element], sm * gpu_.l1_per_sm + slot % gpu_.l1_per_sm);
-        c.element += c.warp->records[c.record].lanes();
-        ++c.record;
+        const traces::Record& record = c.warp->records[c.record];
+        std::uint32_t vector = 0;
+        for (; vector == 0; c.lane += gpu_.simd_width)
+            for (unsigned lane = c.lane; lane < c.lane + gpu_.simd_width; ++lane)
+                vector |= record.mask & std::uint32_t{1} << lane;
+        access(record, vector, &c.warp->elements[c.element], sm, slot);
+        c.element += static_cast<unsigned>(std::popcount(vector));
+        const bool lanes_left = c.lane < traces::warp_lanes && record.mask >> c.lane != 0;
+        if (!lanes_left) {
+            c.lane = 0;
+            ++c.record;
+        }
         if (c.element < c.warp->elements.size()) return true;
         warps.erase(at);
         const unsigned first = slot / gpu_.warps_per_cta * gpu_.warps_per_cta;
@@ -129,28 +114,50 @@ private:
         return true;
     }
 
-    void access(const traces::Record& record, const std::uint32_t* elements, unsigned l1) {
+    /// One vector of lanes; `elements` are those of its active lanes.
+    void access(const traces::Record& record, std::uint32_t mask, const std::uint32_t* elements, unsigned sm,
+                unsigned slot) {
         const traces::Region& region = launch_.regions[record.region];
+        const auto lanes = static_cast<unsigned>(std::popcount(mask));
         Counters& c = group(record).by_kind[static_cast<unsigned>(region.kind)];
         c.warp_accesses += 1;
-        c.lane_accesses += record.lanes();
-        if (region.kind != traces::ObjectKind::texel) c.steps += record.lanes();
-        for (const auto& [line, sectors] : naive_coalesce(region, elements, record.lanes(), gpu_.levels[0])) {
-            std::set<unsigned> l1_misses;
-            for (const unsigned sector : sectors) {
-                c.sectors += 1;
-                if (l1_[l1].hit(line, sector)) {
-                    c.l1_hits += 1;
-                } else {
-                    l1_misses.insert(sector);
-                }
+        c.lane_accesses += lanes;
+        if (region.kind != traces::ObjectKind::texel) c.steps += lanes;
+        count_loads(region, mask, elements, c);
+        for (const auto& [line, sectors] : naive_coalesce(region, elements, lanes, gpu_.levels[0])) {
+            std::set<unsigned> asked = sectors;
+            for (std::size_t level = 0; level < gpu_.levels.size() && !asked.empty(); ++level) {
+                const bool shared = level + 1 == gpu_.levels.size();
+                const unsigned cache = shared ? 0 : level == 0 ? sm * gpu_.l1_per_sm + slot % gpu_.l1_per_sm : sm;
+                const auto answer = caches_[level][cache].look_up(line, asked);
+                (level == 0 ? c.sectors : level == 1 ? c.l2_sectors : c.l3_sectors) += asked.size();
+                (level == 0 ? c.l1_hits : level == 1 ? c.l2_hits : c.l3_hits) += asked.size() - answer.missing.size();
+                asked = answer.fetched;
             }
-            l1_[l1].use(line, sectors);
-            for (const unsigned sector : l1_misses) {
-                c.l2_sectors += 1;
-                (l2_.hit(line, sector) ? c.l2_hits : c.dram_sectors) += 1;
+            c.dram_sectors += asked.size();
+        }
+    }
+
+    /// Load by load, group by group.
+    void count_loads(const traces::Region& region, std::uint32_t mask, const std::uint32_t* elements, Counters& c) {
+        std::uint32_t bytes = 1;
+        while (bytes < gpu_.front_end.load_bytes && bytes < region.element_size) bytes *= 2;
+        const std::uint32_t together = bytes == 16  ? gpu_.front_end.lanes_per_request_16
+                                       : bytes == 8 ? gpu_.front_end.lanes_per_request_8
+                                                    : gpu_.front_end.lanes_per_request_4;
+        for (std::uint32_t begin = 0; begin < region.element_size; begin += bytes) {
+            c.loads += 1;
+            std::set<std::pair<unsigned, std::uint64_t>> requests;  // group and sector
+            const std::uint32_t* element = elements;
+            for (unsigned lane = 0; lane < traces::warp_lanes; ++lane) {
+                if (!(mask >> lane & 1)) continue;
+                const std::uint64_t address = region.address(*element), sector = gpu_.levels[0].sector_bytes;
+                const std::uint32_t end = std::min(begin + bytes, region.element_size);
+                for (std::uint64_t n = (address + begin) / sector; n <= (address + end - 1) / sector; ++n)
+                    requests.insert({lane / together, n});
+                ++element;
             }
-            if (!l1_misses.empty()) l2_.use(line, l1_misses);
+            c.l1_requests += requests.size();
         }
     }
 
@@ -168,21 +175,11 @@ private:
     std::size_t next_cta_ = 0;
     std::vector<std::map<unsigned, Cursor>> resident_;  ///< per SM: unfinished warps by slot
     std::vector<unsigned> last_;                        ///< per SM: slot of the last turn
-    std::vector<NaiveCache> l1_;
-    NaiveCache l2_;
+    std::vector<std::vector<NaiveCache>> caches_;       ///< of each level
     std::map<std::pair<traces::RayType, std::uint8_t>, RayGroup> groups_;
 };
 
 }  // namespace
-
-std::uint64_t naive_set(const CacheGeometry& geometry, std::uint64_t line) {
-    if (geometry.index == SetIndex::modulo) return line % geometry.sets;
-    unsigned k = 1;
-    while (k < 63 && (std::uint64_t{1} << k) < geometry.sets) ++k;
-    std::uint64_t h = 0;
-    for (unsigned shift = 0; shift < 64; shift += k) h ^= line >> shift;
-    return h % geometry.sets;
-}
 
 LaunchStatistics naive_replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample) {
     return {sample, NaiveReplay(gpu, launch).run()};

@@ -7,12 +7,10 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/statistics.hpp"
+#include "naive_place.hpp"
 #include "reference_trace.hpp"
 
 namespace raycache::cachesim::test {
-
-/// The documented set of a line, by 128-bit-free textbook arithmetic.
-std::uint64_t naive_set(const CacheGeometry&, std::uint64_t line);
 
 LaunchStatistics naive_replay(const Gpu&, const Launch&, std::uint32_t sample = 0);
 

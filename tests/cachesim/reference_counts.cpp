@@ -69,6 +69,30 @@ TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[
     CHECK(std::fabs(percent_off(counts.dram_sectors, published.dram_sectors)) < 1.2);
 }
 
+TEST_CASE("requests of the front end are as many as those of a cycle-level simulator", "[slow]") {
+    const auto folder = reference_folder();
+    if (!folder) {
+        WARN("skipped: no reference traces; set RAYCACHE_REFERENCE to their folder");
+        return;
+    }
+    struct Requests {
+        const char* trace;
+        std::uint64_t requests, loads;
+    };
+    const auto published = GENERATE(values<Requests>({{"cp", 6723021, 1528445},
+                                                      {"coh", 4635930, 1147986},
+                                                      {"mj1_64", 5389316, 1267332},
+                                                      {"mj1_1024", 4917835, 1185806},
+                                                      {"hr_coh", 1772352, 694703},
+                                                      {"hr_cp", 6192580, 1486741},
+                                                      {"hr_mj1_64", 3885537, 1036699},
+                                                      {"hr_mj1_1024", 2820657, 883115}}));
+    const Counters counts = replay(rtx_3070_like(8, 256), read_reference(*folder, published.trace)).all();
+    CAPTURE(published.trace);
+    CHECK(counts.l1_requests == published.requests);
+    CHECK(counts.loads == published.loads);
+}
+
 // Hidden: prints the speed of a replay, cachesim_tests "[speed]".
 TEST_CASE("a replay is fast", "[.speed][slow]") {
     const auto folder = reference_folder();

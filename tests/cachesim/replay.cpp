@@ -56,6 +56,8 @@ TEST_CASE("a tiny launch counts as computed by hand") {
     Counters expected;
     expected.steps = expected.lane_accesses = 6;
     expected.warp_accesses = 5;
+    expected.loads = 5 * 4;        // of 16 B
+    expected.l1_requests = 6 * 4;  // no two lanes share a sector
     expected.sectors = 12;
     expected.l1_hits = 2;
     expected.l2_sectors = 10;
@@ -118,6 +120,66 @@ TEST_CASE("permuting lanes changes nothing while a warp access touches one line"
         }
     }
     CHECK(replay(small_gpu(), {nodes, {forward}}) == replay(small_gpu(), {nodes, {backward}}));
+}
+
+TEST_CASE("a level that fills 64 bytes reads the neighbour of a missing sector from below") {
+    const std::vector<traces::Region> texels{region(ObjectKind::texel, 0x200000, 4, 4, 1000)};
+    const Launch launch{texels, {warp({{0}, {8}, {0}, {16}})}};  // sectors 0, 1, 0, 2 of one line
+    Gpu gpu = one_warp_at_a_time();
+    gpu.levels[1].fill_bytes = 64;
+    Counters c = replay(gpu, launch).all();
+    CHECK(c.l1_hits == 1);
+    CHECK(c.l2_sectors == 3);
+    CHECK(c.l2_hits == 1);       // sector 1 came with sector 0
+    CHECK(c.dram_sectors == 4);  // 0 and 1, 2 and 3
+    gpu.levels[0].fill_bytes = 64;
+    c = replay(gpu, launch).all();
+    CHECK(c.l1_hits == 2);
+    CHECK(c.l2_sectors == 4);
+    CHECK(c.l2_hits == 0);
+    CHECK(c.dram_sectors == 4);
+    gpu.levels[1].fill_bytes = 128;
+    c = replay(gpu, launch).all();
+    CHECK(c.l2_sectors == 4);
+    CHECK(c.l2_hits == 2);
+    CHECK(c.dram_sectors == 4);
+}
+
+TEST_CASE("the middle one of three levels belongs to its SM") {
+    // Two SMs read the same node, one after the other: each misses in its own L1 and L2, the second hits in L3.
+    Gpu gpu = one_warp_at_a_time();
+    gpu.sms = 2;
+    gpu.levels.push_back(gpu.levels[1]);
+    const Counters c = replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all();
+    CHECK(c.sectors == 4);
+    CHECK(c.l1_hits == 0);
+    CHECK(c.l2_sectors == 4);
+    CHECK(c.l2_hits == 0);
+    CHECK(c.l3_sectors == 4);
+    CHECK(c.l3_hits == 2);
+    CHECK(c.dram_sectors == 2);
+}
+
+TEST_CASE("a machine of 8 lanes runs a record as the vectors that have active lanes") {
+    Gpu gpu = one_warp_at_a_time();
+    gpu.simd_width = 8;
+    auto w = std::make_shared<traces::WarpTrace>();
+    w->records.push_back({0x80000081u, 0, traces::RayType::camera, 0, 0});  // lanes 0, 7 and 31
+    w->elements = {0, 1, 0};
+    const Counters c = replay(gpu, {nodes, {w}}).all();
+    CHECK(c.warp_accesses == 2);
+    CHECK(c.lane_accesses == 3);
+    CHECK(c.loads == 2 * 4);
+    CHECK(c.sectors == 4 + 2);
+    CHECK(c.l1_hits == 2);
+    // A warp's vectors take a turn each: with one line of L1 and another warp in between, nothing is found again.
+    gpu.warps_per_sm = gpu.warps_per_cta = 2;
+    gpu.levels[0].sets = gpu.levels[0].ways = 1;
+    auto other = std::make_shared<traces::WarpTrace>(*w);
+    other->elements = {8, 9, 8};
+    CHECK(replay(gpu, {nodes, {w, other}}).all().l1_hits == 0);
+    gpu.simd_width = 32;
+    CHECK(replay(gpu, {nodes, {w, other}}).all().warp_accesses == 2);
 }
 
 TEST_CASE("the same launch gives the same counts every time") {

@@ -1,4 +1,5 @@
 // Replay against the naive replay: every count must be equal.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "oracle.hpp"
@@ -40,6 +41,77 @@ TEST_CASE("a replay equals the naive replay for every cache geometry") {
     check_equal(gpu, usual_regions);
     std::swap(gpu.levels[0], gpu.levels[1]);
     check_equal(gpu, usual_regions);
+}
+
+TEST_CASE("a replay equals the naive replay for every policy, fill and number of slices") {
+    const auto* const policy = GENERATE("fifo", "lru", "random", "tree_plru");
+    const auto slices = GENERATE(1u, 2u, 3u, 36u);
+    const auto fill = GENERATE(32u, 64u, 128u);
+    Gpu gpu = small_gpu();
+    for (CacheGeometry& cache : gpu.levels) {
+        cache.policy = policy;
+        cache.ways = 3;
+    }
+    gpu.levels[1].slices = slices;
+    gpu.levels[1].slice_hash = SliceHash::xor_fold;
+    gpu.levels[1].fill_bytes = fill;
+    CAPTURE(policy, slices, fill);
+    check_equal(gpu, usual_regions);
+    gpu.levels[0].fill_bytes = 64;
+    gpu.levels[0].slices = 2;
+    check_equal(gpu, usual_regions);
+}
+
+TEST_CASE("a replay equals the naive replay for three levels") {
+    const auto sms = GENERATE(1u, 2u, 5u);
+    const auto l1_per_sm = GENERATE(1u, 2u);
+    const auto fill = GENERATE(32u, 64u);
+    Gpu gpu = small_gpu();
+    gpu.sms = sms;
+    gpu.l1_per_sm = l1_per_sm;
+    gpu.levels[1].policy = "tree_plru";
+    gpu.levels[1].fill_bytes = fill;
+    gpu.levels.push_back(gpu.levels[1]);
+    gpu.levels[2].slices = 3;
+    gpu.levels[2].ways = 13;
+    CAPTURE(sms, l1_per_sm, fill);
+    check_equal(gpu, usual_regions);
+    if (sms == 2 && fill == 64) check_equal(gpu, usual_regions, 60, 200);  // more than one batch of requests
+}
+
+TEST_CASE("a replay equals the naive replay for every SIMD width and front end") {
+    const auto width = GENERATE(1u, 2u, 4u, 8u, 16u, 32u);
+    const auto load_bytes = GENERATE(4u, 8u, 16u);
+    const auto together = GENERATE(1u, 2u, 8u, 32u);
+    Gpu gpu = small_gpu();
+    gpu.simd_width = width;
+    gpu.front_end = {load_bytes, together, std::min(2 * together, 32u), std::min(4 * together, 32u)};
+    CAPTURE(width, load_bytes, together);
+    check_equal(gpu, usual_regions, 20, 20);
+    check_equal(gpu,
+                {region(ObjectKind::node, 0x1000010, 100, 36, 90), region(ObjectKind::texel, 0x1000400, 7, 9, 90),
+                 region(ObjectKind::node, 0x2000000, 80, 128, 90), region(ObjectKind::node, 0x3000000, 80, 0, 5)},
+                10, 10);
+}
+
+TEST_CASE("a replay equals the naive replay at every extreme at once") {
+    const auto* const policy = GENERATE("fifo", "lru", "random", "tree_plru");
+    Gpu gpu = small_gpu();
+    gpu.sms = gpu.warps_per_sm = gpu.warps_per_cta = 1;
+    gpu.simd_width = 1;
+    for (CacheGeometry& cache : gpu.levels) {
+        cache.policy = policy;
+        cache.sets = cache.ways = 1;
+        cache.line_bytes = cache.sector_bytes = 32;
+    }
+    CAPTURE(policy);
+    check_equal(gpu, usual_regions, 9, 12);
+    gpu.levels[0].sets = 7;  // an L2 of one line below it
+    gpu.levels[0].ways = 3;
+    gpu.sms = 61;  // more SMs than CTAs
+    gpu.warps_per_sm = 3;
+    check_equal(gpu, usual_regions, 9, 12);
+    check_equal(gpu, {region(ObjectKind::node, ~std::uint64_t{0} - 64 * 30 + 1, 64, 64, 30)}, 9, 12);
 }
 
 TEST_CASE("a replay equals the naive replay for every line and sector size") {

@@ -1,11 +1,11 @@
 #include "cachesim/report/report.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cachesim/report/estimate.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
@@ -60,46 +60,6 @@ std::vector<Series> two_strategies() {
 }
 
 }  // namespace
-
-TEST_CASE("Student's t quantiles are those of the tables") {
-    CHECK(student_t_975(1) == Approx(12.7062).epsilon(1e-5));
-    CHECK(student_t_975(2) == Approx(4.30265).epsilon(1e-5));
-    CHECK(student_t_975(9) == Approx(2.26216).epsilon(1e-5));
-    CHECK(student_t_975(30) == Approx(2.04227).epsilon(1e-5));
-}
-
-TEST_CASE("a ratio estimate is as computed by hand") {
-    // R = 15/6 = 2.5; residuals -0.5, 1, -0.5; var = 1.5 / (3 * 2 * 2^2) = 1/16; t(2) / 4.
-    const Estimate e = ratio_of_totals({{2, 6, 7}, {1, 2, 3}});
-    CHECK(e.mean == 2.5);
-    REQUIRE(e.half_width);
-    CHECK(*e.half_width == Approx(0.95 * std::sqrt(2 / (1 - 0.95 * 0.95)) / 4).epsilon(1e-12));
-}
-
-TEST_CASE("a paired ratio estimate is as computed by hand") {
-    // Own R = 6/4 with residuals -0.5, 0.5 and mean y 3; baseline R' = 8/4, residuals 0, 0. Q = 0.75.
-    // e = -1/6, 1/6; var = Q^2 (2/36) / 2 = (0.75/6)^2.
-    const Estimate e = ratio_to_baseline({{2.5, 3.5}, {2, 2}}, {{4, 4}, {2, 2}});
-    CHECK(e.mean == 0.75);
-    REQUIRE(e.half_width);
-    CHECK(*e.half_width == Approx(student_t_975(1) * 0.125).epsilon(1e-12));
-}
-
-TEST_CASE("what all strategies share cancels in a paired ratio") {
-    const Estimate e = ratio_to_baseline({{1, 20, 3}, {1, 2, 3}}, {{2, 40, 6}, {1, 2, 3}});
-    CHECK(e.mean == Approx(0.5));
-    CHECK(*e.half_width == Approx(0).margin(1e-12));
-}
-
-TEST_CASE("estimates without a value are no numbers and have no interval") {
-    CHECK(std::isnan(ratio_of_totals({{1, 2}, {0, 0}}).mean));
-    CHECK_FALSE(ratio_of_totals({{1, 2}, {0, 0}}).half_width);
-    CHECK(ratio_of_totals({{3}, {2}}).mean == 1.5);
-    CHECK_FALSE(ratio_of_totals({{3}, {2}}).half_width);
-    CHECK(std::isnan(ratio_to_baseline({{1, 2}, {1, 1}}, {{0, 0}, {1, 1}}).mean));
-    CHECK(ratio_to_baseline({{0, 0}, {1, 1}}, {{1, 2}, {1, 1}}).mean == 0);
-    CHECK(std::isnan(ratio_of_totals({{}, {}}).mean));
-}
 
 TEST_CASE("the product of the factors is the traffic ratio") {
     std::mt19937_64 random(4);
@@ -210,6 +170,67 @@ micro-jitter, N 64, gtx-980-ti: 48.7 % fewer DRAM bytes/ray, most by L1 locality
     std::size_t start = 0;
     for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
         CHECK(end - start <= 160);
+}
+
+TEST_CASE("with three levels the product of the factors is the traffic ratio, and tables have columns for L3") {
+    auto all = two_strategies();
+    CHECK(to_text(make_report(all, "rotation", GroupBy::none)).find("L3") == std::string::npos);
+    CHECK(to_csv(make_report(all, "rotation", GroupBy::none)).find("l3") == std::string::npos);
+    CHECK(to_json(make_report(all, "rotation", GroupBy::none)).find("l3") == std::string::npos);
+    const std::vector<Series> two_levels = all;
+    for (Series& s : all) {
+        s.gpu = "cpu";
+        s.levels = 3;
+        for (LaunchStatistics& one : s.launches) {
+            Counters& c = one.groups[0].by_kind[0];
+            c.l3_sectors = c.dram_sectors;
+            c.dram_sectors = c.l3_sectors / 4;
+            c.l2_hits = c.l2_sectors - c.l3_sectors;
+            c.l3_hits = c.l3_sectors - c.dram_sectors;
+        }
+    }
+    all.insert(all.end(), two_levels.begin(), two_levels.end());
+    const Report r = make_report(all, "rotation", GroupBy::ray);
+    const Row& camera = r.rows[2];
+    REQUIRE(camera.factors);
+    CHECK(camera.factors->product() == Approx(camera.dram_bytes_ratio->mean).epsilon(1e-12));
+    CHECK(camera.l3_hit_rate->mean == Approx(0.75).epsilon(0.01));
+    CHECK_FALSE(r.rows[4].l3_hit_rate);
+    CHECK(r.rows[6].factors->l3_locality == 1);
+    const std::string text = to_text(r);
+    for (const char* title : {" L3 % ", "L3->L2 B/ray", "x L3 locality"}) CHECK_THAT(text, Catch::Contains(title));
+    const auto json = nlohmann::json::parse(to_json(r));
+    CHECK(json["rows"][2]["l3_hit_rate"]["mean"] == camera.l3_hit_rate->mean);
+    CHECK(json["rows"][4]["l3_hit_rate"].is_null());
+    CHECK(json["rows"][2]["factors"].contains("l3_locality"));
+    const std::string csv = to_csv(r);
+    const auto commas = [&](std::size_t from) {
+        return std::count(csv.begin() + from, csv.begin() + csv.find('\n', from), ',');
+    };
+    CHECK(commas(0) == commas(csv.find('\n') + 1));
+    CHECK_THAT(csv, Catch::Contains("l3_bytes_per_ray"));
+}
+
+TEST_CASE("the counters of a profiler are as computed by hand") {
+    Counters c = counters(100, 4000, 800, 8000, 4000, 1000);
+    c.loads = 3200;
+    c.l1_requests = 16000;
+    const std::string text = to_profiler_text(
+        make_report({series("a", {{0, {RayGroup{traces::RayType::camera, 0, {c}, 100}}}})}, "", GroupBy::none));
+    for (const char* line :
+         {"room, a, N 64, gtx-980-ti ", "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum 16000",
+          "l1tex__t_sector_hit_rate.pct 75.00",  // 4000 of 16000 miss
+          "l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio 5.00",
+          "l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum 4000", "lts__t_sectors_srcunit_tex_lookup_hit.sum 3000",
+          "lts__t_sectors_srcunit_tex_lookup_miss.sum 1000", "lts__t_sector_hit_rate.pct 75.00",
+          "dram__bytes_read.sum 32000", "smsp__thread_inst_executed_per_inst_executed.ratio 5.00"}) {
+        std::string squeezed;
+        for (const char letter : text)
+            if (letter != ' ' || squeezed.back() != ' ') squeezed += letter;
+        CHECK_THAT(squeezed, Catch::Contains(line));
+    }
+    CHECK(to_profiler_text(make_report({series("a", {launch(0, {})})}, "", GroupBy::none)).find("nan") ==
+          std::string::npos);
 }
 
 TEST_CASE("a report of nothing still prints") {

@@ -103,7 +103,7 @@ TEST_CASE("the sectors exported of every L1 give the replay's L1 hits in a cache
     std::uint64_t found = 0, asked = 0;
     for (unsigned sm = 0; sm < sms; ++sm) {
         for (unsigned l1 = 0; l1 < l1_per_sm; ++l1) {
-            const Exported one = export_launch(gpu, launch, {sm, l1}, "u64");
+            const Exported one = export_launch(gpu, launch, {0, sm, l1}, "u64");
             CHECK(one.counts == expected);  // to listen changes nothing
             const auto sectors = addresses(one.bytes);
             asked += sectors.size();
@@ -111,7 +111,7 @@ TEST_CASE("the sectors exported of every L1 give the replay's L1 hits in a cache
             found += here;
             // The hits that the replay itself saw there, line by line.
             std::uint64_t told = 0;
-            for (const std::string& line : lines_of(export_launch(gpu, launch, {sm, l1}, "csv").bytes))
+            for (const std::string& line : lines_of(export_launch(gpu, launch, {0, sm, l1}, "csv").bytes))
                 told += line.ends_with(",1");
             CHECK(told == here);
         }
@@ -127,7 +127,7 @@ TEST_CASE("the sectors exported of L2 give the replay's L2 hits in a cache writt
     const Gpu gpu = test_gpu(sms, 1);
     const Launch launch = random_launch(regions, 60, 300, 6);
     const Counters expected = naive_replay(gpu, launch).all();
-    const Exported exported = export_launch(gpu, launch, {}, "u64");
+    const Exported exported = export_launch(gpu, launch, {1, 0, {}}, "u64");
     CHECK(exported.counts == expected);
     const auto sectors = addresses(exported.bytes);
     CHECK(sectors.size() == expected.l2_sectors);
@@ -139,9 +139,9 @@ TEST_CASE("the sectors exported of L2 give the replay's L2 hits in a cache writt
 TEST_CASE("the three formats tell the same addresses") {
     const Gpu gpu = test_gpu(2, 2);
     const Launch launch = random_launch(regions, 20, 40, 7);
-    const auto sectors = addresses(export_launch(gpu, launch, {1, {}}, "u64").bytes);
-    const auto dinero = lines_of(export_launch(gpu, launch, {1, {}}, "dinero").bytes);
-    const auto csv = lines_of(export_launch(gpu, launch, {1, {}}, "csv").bytes);
+    const auto sectors = addresses(export_launch(gpu, launch, {0, 1, {}}, "u64").bytes);
+    const auto dinero = lines_of(export_launch(gpu, launch, {0, 1, {}}, "dinero").bytes);
+    const auto csv = lines_of(export_launch(gpu, launch, {0, 1, {}}, "csv").bytes);
     REQUIRE(!sectors.empty());
     REQUIRE(dinero.size() == sectors.size());
     REQUIRE(csv.size() == sectors.size() + 1);
@@ -159,12 +159,12 @@ TEST_CASE("a row tells whose look-up it is, sectors of a line in ascending order
     warp->records = {{3u, 0, traces::RayType::shadow, 2, 0}, {1u, 2, traces::RayType::camera, 0, 0}};
     warp->elements = {1, 0, 9};
     launch.warps = {warp};
-    CHECK(export_launch(test_gpu(1, 1), launch, {0, 0}, "csv").bytes ==
+    CHECK(export_launch(test_gpu(1, 1), launch, {0, 0, 0}, "csv").bytes ==
           "address,cache,ray,bounce,kind,hit\n"
           "139981574111232,0,shadow,2,node,0\n"
           "139981574111264,0,shadow,2,node,0\n"
           "139981574111296,0,shadow,2,node,0\n"
           "139981574111328,0,shadow,2,node,0\n"
           "1099511627808,0,camera,0,texel,0\n");
-    CHECK(export_launch(test_gpu(2, 1), launch, {1, 0}, "u64").bytes.empty());
+    CHECK(export_launch(test_gpu(2, 1), launch, {0, 1, 0}, "u64").bytes.empty());
 }

@@ -45,6 +45,33 @@ policy = "lru"
         totals["l2_hits"] = totals["l2_sectors"] - totals["dram_sectors"]
         self.assertEqual(sums, {key: totals[key] for key in sums})
 
+    def test_what_the_second_levels_of_all_cores_lack_the_third_is_asked_for(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        head = """name = "few"
+description = "two cores"
+sms = 2
+warps_per_sm = 2
+warps_per_cta = 1
+l1_per_sm = 1
+simd_width = 8
+"""
+        cache = """ways = 4
+line_bytes = 64
+sector_bytes = 64
+index = "modulo"
+policy = "fifo"
+"""
+        levels = [f"[l{level}]\nsets = {sets}\n{cache}" for level, sets in ((1, 8), (2, 32), (3, 256))]
+        self.path("few.toml").write_text(head + "".join(levels))
+        missing = 0
+        for core in (0, 1):
+            self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l2", "--sm", core, "--format", "csv", "-o",
+                          "x.csv")
+            missing += sum(line.endswith(",0") for line in self.path("x.csv").read_text("ascii").splitlines())
+        self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l3", "--format", "u64", "-o", "l3.u64")
+        self.assertEqual(self.path("l3.u64").stat().st_size, 8 * missing)
+        self.assertGreater(missing, 0)
+
     def test_dinero_and_u64_files_hold_the_same_sectors_and_nothing_is_printed(self):
         trace = self.capture()
         for form in ("dinero", "u64"):
@@ -66,6 +93,11 @@ policy = "lru"
         self.refuses(2, "export", trace, "--gpu", "gtx-980-ti", "--sm", "0", *out, mentions=["--l1", "0 to 1"])
         self.refuses(2, "export", trace, *H100, "--level", "l3", *out, mentions=["l3"])
         self.refuses(2, "export", trace, *H100, "--level", "l2", "--sm", "0", *out, mentions=["--sm"])
+        cpu = ["--gpu", "xeon-8380"]
+        self.refuses(2, "export", trace, *cpu, "--level", "l2", *out, mentions=["--sm", "0 to 39"])
+        self.refuses(2, "export", trace, *cpu, "--level", "l2", "--sm", "0", "--l1", "0", *out, mentions=["--l1"])
+        self.refuses(2, "export", trace, *cpu, "--level", "l3", "--sm", "0", *out, mentions=["--sm"])
+        self.refuses(2, "export", trace, *cpu, "--level", "l4", *out, mentions=["l4", "l1, l2, l3"])
         self.refuses(2, "export", trace, *H100, "--sm", "0", "--launch", "2", *out, mentions=["--launch 2", "0 to 1"])
         self.refuses(2, "export", trace, *H100, "--sm", "0", "--format", "vcd", "-o", "x", mentions=["vcd", "dinero"])
 

@@ -56,9 +56,11 @@ class HelpAndList(ProgramTest):
         text = self.succeeds("list", "gpus", "--details").text
         for gpu in gpus:
             values = [gpu[key] for key in ("sms", "warps_per_sm", "warps_per_cta", "l1_per_sm")]
-            for cache in (gpu["l1"], gpu["l2"]):
+            for cache in [gpu[level] for level in ("l1", "l2", "l3") if level in gpu]:
                 values += [cache[key] for key in ("sets", "ways", "line_bytes", "sector_bytes", "index", "policy")]
-                self.assertEqual(cache["bytes"], cache["sets"]["value"] * cache["ways"]["value"] * 128)
+                slices = cache.get("slices", {"value": 1})["value"]
+                self.assertEqual(cache["bytes"], slices * cache["sets"]["value"] * cache["ways"]["value"] *
+                                 cache["line_bytes"]["value"])
             for value in values:
                 self.assertGreater(len(value["source"]), 6, gpu["name"])
                 self.assertIn(f"{value['value']}  {value['source']}\n", text)

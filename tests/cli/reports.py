@@ -58,6 +58,35 @@ class Reports(ProgramTest):
             self.assertEqual(row["totals"]["dram_sectors"], int(line["dram_sectors"]))
             self.assertEqual(row["l1_hit_rate"]["mean"], float(line["l1_hit_rate"]))
 
+    def test_the_counters_of_a_profiler_are_those_of_the_json(self):
+        trace = self.capture()
+        totals = self.succeeds("replay", trace, *GPU, "--json").json["rows"][0]["totals"]
+        text = self.succeeds("replay", trace, *GPU, "--counters", "ncu").text
+        values = dict(line.split() for line in text.splitlines() if "__" in line and len(line.split()) == 2)
+        self.assertEqual(int(values["l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum"]), totals["l1_requests"])
+        self.assertEqual(int(values["dram__bytes_read.sum"]), 32 * totals["dram_sectors"])
+        self.assertEqual(len(values), 9)
+        self.assertGreater(totals["l1_requests"], totals["sectors"])
+        self.assertEqual(self.succeeds(*COMPARE, "--counters", "ncu").text.count("dram__bytes_read.sum"), 3)
+        self.refuses(2, "replay", trace, *GPU, "--counters", "ncu", "--json", mentions=["--counters"])
+        self.refuses(2, "replay", trace, *GPU, "--counters", "nvprof", mentions=["--counters", "nvprof"])
+        self.refuses(2, "replay", trace, "--gpu", "xeon-8380", "--counters", "ncu", mentions=["xeon-8380", "two levels"])
+
+    def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
+        command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]
+        text = self.succeeds(*command).text
+        for title in ("L3 %", "L3->L2 B/ray", "x L3 locality"):
+            self.assertIn(title, text)
+        self.assertNotIn("L3", self.succeeds(*COMPARE).text)
+        for row in self.succeeds(*command, *GPU, "--json").json["rows"]:
+            totals = row["totals"]
+            if row["gpu"] == "xeon-8380":
+                self.assertEqual(totals["l2_sectors"], totals["l2_hits"] + totals["l3_sectors"])
+                self.assertEqual(totals["l3_sectors"], totals["l3_hits"] + totals["dram_sectors"])
+                self.assertLessEqual(row["active_lanes"]["mean"], 8)
+            else:
+                self.assertIsNone(row["l3_hit_rate"])
+
     def test_the_lines_of_the_table_are_as_wide_as_each_other_and_name_each_strategy(self):
         text = self.succeeds(*COMPARE).text
         for name in ("coherent", "cranley-patterson", "micro-jitter"):

@@ -16,6 +16,7 @@ public:
     LruAvx512(const CacheGeometry& geometry, unsigned caches, const LineIds& ids)
         : ids_(ids),
           map_(geometry),
+          fill_(geometry),
           sets_per_cache_(caches > 1 ? geometry.slices * geometry.sets : 0),
           near_(geometry.slices * geometry.sets * sizeof(Set) <= near),
           oldest_(std::uint64_t{1} << (geometry.ways - 1)),
@@ -27,7 +28,7 @@ public:
         if (near_) {
             for (Request& request : requests) {
                 const std::uint64_t set = request.cache * sets_per_cache_ + map_(request.line);
-                request.sectors = access(first[set], request);
+                request.sectors = fetch(first[set], request);
             }
             return;
         }
@@ -38,7 +39,7 @@ public:
                 sets[i] = first + run[i].cache * sets_per_cache_ + map_(run[i].line);
                 for (unsigned v = 0; v < vectors; ++v) __builtin_prefetch(&sets[i]->words[v * 16], 1);
             }
-            for (std::size_t i = 0; i < run.size(); ++i) run[i].sectors = access(*sets[i], run[i]);
+            for (std::size_t i = 0; i < run.size(); ++i) run[i].sectors = fetch(*sets[i], run[i]);
             requests = requests.subspan(run.size());
         }
     }
@@ -50,6 +51,15 @@ private:
     struct alignas(64) Set {
         std::uint32_t words[vectors * 16] = {};
     };
+
+    /// The missing sectors and what Fill adds.
+    RAYCACHE_AVX512 std::uint32_t fetch(Set& set, const Request& request) const {
+        const std::uint32_t missing = access(set, request);
+        if (!fill_.widens() || !missing) return missing;
+        Request neighbours = request;
+        neighbours.sectors = fill_.pieces(missing);
+        return missing | access(set, neighbours);
+    }
 
     RAYCACHE_AVX512 std::uint32_t access(Set& set, const Request& request) const {
         const std::uint32_t sector_mask = (1u << sector_bits_) - 1;
@@ -81,6 +91,7 @@ private:
 
     LineIds ids_;
     LineMap map_;
+    Fill fill_;
     std::uint64_t sets_per_cache_;  ///< 0 for a shared level
     bool near_;
     std::uint64_t oldest_;  ///< bit of the oldest way

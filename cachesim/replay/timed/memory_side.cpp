@@ -33,26 +33,31 @@ MemorySide::MemorySide(const Gpu& gpu, const Idealised& ideal)
       slice_cost_(cycles_per_sector(timing_.l2_bytes_per_cycle, geometry_.sector_bytes, ideal.infinite_bandwidth)),
       dram_cost_(cycles_per_sector(timing_.dram_gb_s * 1e9 / (timing_.clock_mhz * 1e6) / timing_.dram_channels,
                                    geometry_.sector_bytes, ideal.infinite_bandwidth)),
-      sm_out_(gpu.sms),
-      sm_in_(gpu.sms),
-      slice_in_(geometry_.slices),
-      slice_out_(geometry_.slices),
       channel_(timing_.dram_channels),
       merges_(geometry_.slices * geometry_.sets * geometry_.ways * sectors_per_line_),
-      under_way_(geometry_.slices) {}
+      under_way_(geometry_.slices),
+      to_slices_(gpu.sms, geometry_.slices, slice_cost_),
+      to_sms_(geometry_.slices, gpu.sms, crossbar_cost_),
+      sent_(gpu.sms) {}
 
-void MemorySide::request(const MissRequest& r) {
-    const LineMap::Place place = map_.place(r.line);
-    const double granted = std::max({static_cast<double>(r.time), sm_out_[r.sm], slice_in_[place.slice]});
-    sm_out_[r.sm] = granted + crossbar_cost_;
-    slice_in_[place.slice] = granted + slice_cost_;
-    const auto time = static_cast<Cycle>(std::ceil(granted));
-    const Cycle arrival = look_up(r.line, r.sector, place.slice, time);
-    // Data that were on their way for longer than a slice waits block what comes behind.
-    const bool far = std::uint64_t{place.slice} * timing_.l2_partitions / geometry_.slices !=
-                     std::uint64_t{r.sm} * timing_.l2_partitions / sms_;
+void MemorySide::request(const MissRequest& miss) {
+    double& free = sent_[miss.sm];
+    const double sent = std::max(static_cast<double>(miss.time), free);
+    free = sent + crossbar_cost_;
+    to_slices_.add(miss.sm, {static_cast<Cycle>(std::ceil(sent)), map_.place(miss.line).slice, miss});
+}
+
+void MemorySide::run_requests(Cycle end) {
+    to_slices_.run(end, [this](const Packet& packet, Cycle time) { serve(packet, time); });
+}
+
+void MemorySide::serve(const Packet& packet, Cycle time) {
+    const MissRequest& miss = packet.miss;
+    const Cycle arrival = look_up(miss.line, miss.sector, packet.output, time);
+    const bool far = std::uint64_t{packet.output} * timing_.l2_partitions / geometry_.slices !=
+                     std::uint64_t{miss.sm} * timing_.l2_partitions / sms_;
     const Cycle ready = std::max(arrival, time) + shortest_ + (far ? far_extra_ : 0);
-    replies_.push({ready, order_++, place.slice, r.entry, r.sm, r.sector, r.l1});
+    to_sms_.add(packet.output, {ready, miss.sm, miss.entry, miss.sector, miss.l1});
 }
 
 Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_t slice, Cycle time) {
@@ -71,7 +76,7 @@ Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_
         ++answers_.merges;
         // A register that merges no more holds up the slice until the data are there.
         if (++merges_[entry * sectors_per_line_ + sector] >= timing_.l2_mshr_merges)
-            slice_in_[slice] = std::max(slice_in_[slice], static_cast<double>(arrival));
+            to_slices_.block_output(slice, arrival);
         return arrival;
     }
     auto& under_way = under_way_[slice];
@@ -79,7 +84,7 @@ Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_
     if (under_way.size() >= timing_.l2_mshrs) {
         time = under_way.top();
         under_way.pop();
-        slice_in_[slice] = std::max(slice_in_[slice], static_cast<double>(time));
+        to_slices_.block_output(slice, time);
     }
     if (entry == SectorTags::none) {
         ++answers_.line_misses;
@@ -111,17 +116,6 @@ Cycle MemorySide::read_dram(std::uint32_t slice, Cycle time) {
     const double start = std::max(static_cast<double>(time), free);
     free = start + dram_cost_;
     return static_cast<Cycle>(std::ceil(start)) + dram_extra_;
-}
-
-bool MemorySide::next_reply(Cycle end, Reply& reply) {
-    if (replies_.empty() || replies_.top().ready >= end) return false;
-    reply = replies_.top();
-    replies_.pop();
-    const double out = std::max({static_cast<double>(reply.ready), slice_out_[reply.slice], sm_in_[reply.sm]});
-    slice_out_[reply.slice] = out + slice_cost_;
-    sm_in_[reply.sm] = out + crossbar_cost_;
-    reply.ready = static_cast<Cycle>(std::ceil(out));
-    return true;
 }
 
 }  // namespace raycache::cachesim

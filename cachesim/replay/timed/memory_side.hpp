@@ -1,9 +1,9 @@
 // Below the L1s, in time: crossbar, L2 slices and DRAM channels, each a server with a rate and a next-free time.
 //
-// A request leaves its SM when the SM's port and the slice's port of the crossbar are free; the port stays taken until
-// then, so what comes behind waits (head-of-line blocking). The slice looks it up; data of a hit are on their way after
-// l2_latency - l1_latency, those of a miss after the DRAM channel of the slice was free and dram_latency - l2_latency
-// more. Replies cross the other half of the crossbar in order of readiness.
+// Requests cross from SMs to slices, replies from slices to SMs (cachesim/replay/timed/crossbar.hpp). The slice looks a
+// request up; data of a hit are ready to go back after l2_latency - l1_latency, those of a miss after the slice's DRAM
+// channel was free and dram_latency - l2_latency more. A slice whose registers for misses are all taken, or merge no
+// more, takes no request until one is free.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/timed/crossbar.hpp"
 #include "cachesim/replay/timed/sector_tags.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
@@ -44,22 +45,28 @@ public:
     /// No reply to a request at `time` is there before time + this.
     Cycle shortest_answer() const { return shortest_; }
 
-    /// Takes requests in order of time, ties in order of SM.
+    /// Of one SM in order of time.
     void request(const MissRequest&);
 
     struct Reply {
-        Cycle ready = 0;  ///< at the slice; after next_reply(): at the SM
-        std::uint64_t order = 0;
-        std::uint32_t slice = 0, entry = 0;
-        std::uint16_t sm = 0;
+        Cycle ready = 0;           ///< at the slice; when delivered: at the SM
+        std::uint32_t output = 0;  ///< the SM
+        std::uint32_t entry = 0;
         std::uint8_t sector = 0, l1 = 0;
-        bool operator>(const Reply& other) const {
-            return ready != other.ready ? ready > other.ready : order > other.order;
-        }
     };
-    /// The next reply that is ready at its slice before `end`, carried to its SM; false if there is none.
-    bool next_reply(Cycle end, Reply&);
-    bool idle() const { return replies_.empty(); }
+    /// Calls deliver(reply) for every reply that reaches the head of its slice before `end`, in order of that time.
+    /// Call before the SMs run to `end`.
+    template <class Deliver>
+    void run_replies(Cycle end, Deliver&& deliver) {
+        to_sms_.run(end, [&](Reply reply, Cycle arrived) {
+            reply.ready = arrived;
+            deliver(reply);
+        });
+    }
+    /// Lets requests before `end` reach their slices. Call after all SMs ran to `end`.
+    void run_requests(Cycle end);
+
+    bool idle() const { return to_slices_.empty() && to_sms_.empty(); }
 
     const LevelAnswers& l2() const { return answers_; }
     std::uint64_t dram_sectors() const { return dram_sectors_; }
@@ -68,6 +75,13 @@ public:
     double crossbar_cycles_per_sector() const { return crossbar_cost_; }
 
 private:
+    struct Packet {
+        Cycle ready = 0;
+        std::uint32_t output = 0;  ///< the slice
+        MissRequest miss;
+    };
+
+    void serve(const Packet&, Cycle);
     Cycle look_up(std::uint64_t line, std::uint32_t sector, std::uint32_t slice, Cycle time);
     Cycle read_dram(std::uint32_t slice, Cycle time);
 
@@ -79,13 +93,14 @@ private:
     std::uint32_t sectors_per_line_, sectors_per_fill_;
     std::uint32_t sms_, slices_per_channel_;
     Cycle shortest_, dram_extra_, far_extra_;
-    double crossbar_cost_, slice_cost_, dram_cost_;                        ///< cycles per sector
-    std::vector<double> sm_out_, sm_in_, slice_in_, slice_out_, channel_;  ///< when each is free
-    std::vector<std::uint16_t> merges_;                                    ///< of each sector of each entry
+    double crossbar_cost_, slice_cost_, dram_cost_;  ///< cycles per sector
+    std::vector<double> channel_;                    ///< when each is free
+    std::vector<std::uint16_t> merges_;              ///< of each sector of each entry
     /// Arrivals of the sectors on their way, of each slice: how many miss-status holding registers are taken.
     std::vector<std::priority_queue<Cycle, std::vector<Cycle>, std::greater<>>> under_way_;
-    std::priority_queue<Reply, std::vector<Reply>, std::greater<>> replies_;
-    std::uint64_t order_ = 0;
+    Crossbar<Packet> to_slices_;
+    Crossbar<Reply> to_sms_;
+    std::vector<double> sent_;  ///< when the port of each SM is free for its next request
     LevelAnswers answers_;
     std::uint64_t dram_sectors_ = 0;
 };

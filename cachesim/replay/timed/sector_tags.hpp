@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/cache/divider.hpp"
+
 namespace raycache::cachesim {
 
 using Cycle = std::uint64_t;
@@ -19,9 +21,10 @@ public:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
     static constexpr Cycle unknown = ~Cycle{0};
 
-    /// All sets empty. sets * ways < 2^32 - 1; at most 32 sectors per line.
+    /// All sets empty. sets * ways < 2^32 - 1, ways < 2^16; at most 32 sectors per line.
     SectorTags(std::uint64_t sets, std::uint64_t ways, std::uint32_t sectors_per_line, bool fifo)
         : ways_(ways),
+          by_ways_(ways),
           sectors_(sectors_per_line),
           fifo_(fifo),
           shift_(64 - static_cast<int>(std::bit_width(std::bit_ceil(2 * sets * ways) - 1))),
@@ -30,10 +33,9 @@ public:
           arrival_(sets * ways * sectors_per_line),
           chains_(std::bit_ceil(2 * sets * ways), none) {
         for (std::uint64_t set = 0; set < sets; ++set) {
-            newest_[set] = static_cast<std::uint32_t>(set * ways);
             for (std::uint64_t way = 0; way < ways; ++way) {
-                lines_[set * ways + way].older = static_cast<std::uint32_t>(set * ways + (way + 1) % ways);
-                lines_[set * ways + way].newer = static_cast<std::uint32_t>(set * ways + (way + ways - 1) % ways);
+                lines_[set * ways + way].older = static_cast<std::uint16_t>((way + 1) % ways);
+                lines_[set * ways + way].newer = static_cast<std::uint16_t>((way + ways - 1) % ways);
             }
         }
     }
@@ -49,11 +51,17 @@ public:
     }
 
     bool present(std::uint32_t entry, std::uint32_t sector) const { return lines_[entry].present >> sector & 1; }
+    /// Whether a present sector's data are there. Most often the line alone can tell.
+    bool arrived(std::uint32_t entry, std::uint32_t sector, Cycle now) const {
+        return lines_[entry].last_arrival <= now || arrival(entry, sector) <= now;
+    }
     Cycle arrival(std::uint32_t entry, std::uint32_t sector) const { return arrival_[entry * sectors_ + sector]; }
 
     /// The line was looked up.
     void use(std::uint32_t entry) {
-        if (!fifo_) make_newest(entry);
+        if (fifo_) return;
+        const auto [set, way] = by_ways_(entry);
+        make_newest(set, static_cast<std::uint16_t>(way));
     }
 
     /// Takes in an absent sector, whose data arrive then.
@@ -77,19 +85,22 @@ public:
     /// Evicts a line of the set for this one, which is absent; its sectors are absent as yet. `none` if every line of
     /// the set has a sector on its way.
     std::uint32_t replace(std::uint64_t set, std::uint64_t line, Cycle now) {
-        const std::uint32_t oldest = lines_[newest_[set]].newer;
-        std::uint32_t victim = oldest;
-        while (lines_[victim].last_arrival > now) {
-            victim = lines_[victim].newer;
-            if (victim == oldest) return none;
+        const auto first = static_cast<std::uint32_t>(set * ways_);
+        Line* const lines = &lines_[first];
+        const std::uint16_t oldest = lines[newest_[set]].newer;
+        std::uint16_t way = oldest;
+        while (lines[way].last_arrival > now) {
+            way = lines[way].newer;
+            if (way == oldest) return none;
         }
+        const std::uint32_t victim = first + way;
         Line& entry = lines_[victim];
         if (entry.present) {
             std::uint32_t* link = &chains_[bucket(entry.line)];
             while (*link != victim) link = &lines_[*link].next;
             *link = entry.next;
         }
-        make_newest(victim, set);
+        make_newest(set, way);
         entry.line = line;
         entry.present = 0;
         entry.last_arrival = 0;
@@ -104,34 +115,36 @@ private:
         std::uint64_t line = 0;
         Cycle last_arrival = 0;              ///< of the sectors that are present
         std::uint32_t present = 0;           ///< bit s: sector s
-        std::uint32_t older = 0, newer = 0;  ///< a ring of the set; the newest's `newer` is the oldest
         std::uint32_t next = none;           ///< the chain of the bucket
+        std::uint16_t older = 0, newer = 0;  ///< ways, a ring of the set; the newest's `newer` is the oldest
     };
+    static_assert(sizeof(std::uint64_t) + sizeof(Cycle) + 12 <= 32);  // two lines to a cache line of the machine
 
     /// Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
     std::uint64_t bucket(std::uint64_t line) const { return (line * 0x9e3779b97f4a7c15ull) >> shift_; }
 
-    void make_newest(std::uint32_t entry) { make_newest(entry, entry / ways_); }
-    void make_newest(std::uint32_t entry, std::uint64_t set) {
-        std::uint32_t& newest = newest_[set];
-        if (entry == newest) return;
-        Line& line = lines_[entry];
-        lines_[line.newer].older = line.older;
-        lines_[line.older].newer = line.newer;
-        const std::uint32_t second = newest, oldest = lines_[second].newer;
+    void make_newest(std::uint64_t set, std::uint16_t way) {
+        std::uint16_t& newest = newest_[set];
+        if (way == newest) return;
+        Line* const lines = &lines_[set * ways_];
+        Line& line = lines[way];
+        lines[line.newer].older = line.older;
+        lines[line.older].newer = line.newer;
+        const std::uint16_t second = newest, oldest = lines[second].newer;
         line.older = second;
         line.newer = oldest;
-        lines_[second].newer = entry;
-        lines_[oldest].older = entry;
-        newest = entry;
+        lines[second].newer = way;
+        lines[oldest].older = way;
+        newest = way;
     }
 
     std::uint64_t ways_;
+    Divider by_ways_;
     std::uint32_t sectors_;
     bool fifo_;
     int shift_;
     std::vector<Line> lines_;
-    std::vector<std::uint32_t> newest_;  ///< of each set
+    std::vector<std::uint16_t> newest_;  ///< way, of each set
     std::vector<Cycle> arrival_;         ///< of each sector of each entry
     std::vector<std::uint32_t> chains_;
 };

@@ -19,7 +19,6 @@ struct TimedReplay::Impl {
 
     void place_cta();
     void run_window();
-    void collect_misses();
     bool idle() const {
         return memory.idle() && std::all_of(sms.begin(), sms.end(), [](const TimedSm& sm) { return sm.idle(); });
     }
@@ -38,8 +37,7 @@ struct TimedReplay::Impl {
     Cycle window = 1, now = 0;
     std::vector<WarpPointer> cta;
     std::uint64_t placed = 0;
-    std::vector<FreeSlot> free;                      ///< earliest last
-    std::vector<std::vector<MissRequest>> by_cycle;  ///< of the window
+    std::vector<FreeSlot> free;  ///< earliest last
     TimedStatistics total;
 };
 
@@ -67,21 +65,16 @@ void TimedReplay::Impl::place_cta() {
 
 void TimedReplay::Impl::run_window() {
     const Cycle end = now + window;
-    MemorySide::Reply reply;
-    while (memory.next_reply(end, reply)) sms[reply.sm].deliver(reply);
-    by_cycle.resize(window);
+    memory.run_replies(end, [this](const MemorySide::Reply& reply) { sms[reply.output].deliver(reply); });
     for (std::size_t i = 0; i < sms.size(); ++i) {
         TimedSm& sm = sms[i];
         sm.run(end);
-        for (const MissRequest& miss : sm.misses) by_cycle[miss.time - now].push_back(miss);
+        for (const MissRequest& miss : sm.misses) memory.request(miss);
         sm.misses.clear();
         for (const auto& [time, slot] : sm.freed) free.push_back({time, i, slot});
         sm.freed.clear();
     }
-    for (std::vector<MissRequest>& cycle : by_cycle) {
-        for (const MissRequest& miss : cycle) memory.request(miss);
-        cycle.clear();
-    }
+    memory.run_requests(end);
     std::sort(free.begin(), free.end(), std::greater<>());
     now = end;
 }
@@ -105,20 +98,8 @@ TimedStatistics TimedReplay::finish() {
     TimedStatistics& t = i.total;
     Cycle last = 0;
     for (const TimedSm& sm : i.sms) {
-        const TimedStatistics& s = sm.statistics;
         last = std::max(last, sm.last_end());
-        t.rays += s.rays;
-        t.warp_accesses += s.warp_accesses;
-        t.lane_accesses += s.lane_accesses;
-        t.instructions += s.instructions;
-        t.loads += s.loads;
-        t.l1.hits += s.l1.hits;
-        t.l1.merges += s.l1.merges;
-        t.l1.line_misses += s.l1.line_misses;
-        t.l1.sector_misses += s.l1.sector_misses;
-        t.visit_cycles += s.visit_cycles;
-        t.issue.busy += s.issue.busy;
-        t.l1_port.busy += s.l1_port.busy;
+        t += sm.statistics;
     }
     const Gpu& gpu = i.rules.gpu;
     t.cycles = last + i.rules.timing.launch_cycles;

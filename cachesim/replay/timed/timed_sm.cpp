@@ -44,6 +44,8 @@ TimedSm::TimedSm(const TimedRules& rules, std::uint16_t number)
     : rules_(rules),
       number_(number),
       warps_(std::size_t{rules.cta_slots} * rules.gpu.warps_per_cta),
+      flights_(warps_.size() * rules.timing.accesses_in_flight),
+      per_warp_(rules.timing.accesses_in_flight),
       unfinished_(rules.cta_slots),
       schedulers_(rules.timing.schedulers) {
     for (unsigned i = 0; i < rules.gpu.l1_per_sm; ++i) l1s_.emplace_back(rules);
@@ -62,19 +64,21 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
         warp.end = warp.next + trace.records.size();
         warp.elements = trace.elements.data();
         warp.age = placed_++;
-        warp.computing = false;
+        warp.flights = per_warp_;
         ++resident_;
         ++unfinished_[cta_slot];
-        events_.push({from, slot});
-        warp.computing = true;  // as if it came from the instructions of a visit
+        for (std::uint32_t f = slot * per_warp_; f < (slot + 1) * per_warp_; ++f) {
+            flights_[f].computing = true;  // as if it came from the instructions of a visit
+            events_.push({from, f});
+        }
     }
 }
 
-void TimedSm::begin_visit(std::uint32_t slot, Cycle time) {
-    Warp& warp = warps_[slot];
+void TimedSm::begin_visit(std::uint32_t number, Cycle time) {
+    Warp& warp = warp_of(number);
     while (warp.next != warp.end && !warp.next->is_access()) ++warp.next;
     if (warp.next == warp.end) {
-        end_warp(slot, time);
+        end_flight(number, time);
         return;
     }
     const traces::Record& record = *warp.next++;
@@ -88,45 +92,51 @@ void TimedSm::begin_visit(std::uint32_t slot, Cycle time) {
         }
         mask = lanes == traces::warp_lanes ? ~0u : (1u << lanes) - 1;
     }
-    warp.shape = &rules_.shapes[record.region];
-    warp.instructions = rules_.instructions[record.region];
-    warp.visit.begin(*warp.shape, mask, warp.elements);
+    Flight& flight = flights_[number];
+    flight.shape = &rules_.shapes[record.region];
+    flight.instructions = rules_.instructions[record.region];
+    flight.visit.begin(*flight.shape, mask, warp.elements);
     warp.elements += lanes;
-    warp.issued = warp.at_port = warp.unresolved = 0;
-    warp.arrival = 0;
-    warp.first_issue = ~Cycle{0};
+    flight.issued = flight.at_port = flight.unresolved = 0;
+    flight.arrival = 0;
+    flight.first_issue = ~Cycle{0};
     ++statistics.warp_accesses;
     statistics.lane_accesses += lanes;
-    schedulers_[slot % schedulers_.size()].ready |= std::uint64_t{1} << slot / schedulers_.size();
+    const std::uint32_t bit =
+        number / per_warp_ / static_cast<std::uint32_t>(schedulers_.size()) * per_warp_ + number % per_warp_;
+    scheduler_of(number).ready |= std::uint64_t{1} << bit;
 }
 
-void TimedSm::end_warp(std::uint32_t slot, Cycle time) {
-    warps_[slot].trace.reset();
-    --resident_;
+void TimedSm::end_flight(std::uint32_t number, Cycle time) {
     last_end_ = std::max(last_end_, time);
-    const unsigned cta = slot / rules_.gpu.warps_per_cta;
+    if (--warp_of(number).flights > 0) return;
+    warp_of(number).trace.reset();
+    --resident_;
+    const unsigned cta = number / per_warp_ / rules_.gpu.warps_per_cta;
     if (--unfinished_[cta] == 0) freed.emplace_back(time, cta);
 }
 
 /// The data of a visit are there: its instructions follow. Those that need only earlier data have issued meanwhile.
-void TimedSm::compute(std::uint32_t slot, Cycle time) {
-    Warp& warp = warps_[slot];
-    warp.computing = true;
-    statistics.visit_cycles += time - warp.first_issue;
-    statistics.instructions += warp.instructions;
-    const std::uint32_t early = std::min(warp.shape->loads - 1, warp.instructions);
-    const std::uint32_t left = warp.instructions - early;
-    Scheduler& scheduler = schedulers_[slot % schedulers_.size()];
-    scheduler.free = std::max(scheduler.free, time) + warp.instructions;
-    statistics.issue.busy += warp.instructions;
+void TimedSm::compute(std::uint32_t number, Cycle time) {
+    Flight& flight = flights_[number];
+    flight.computing = true;
+    statistics.visit_cycles += time - flight.first_issue;
+    statistics.instructions += flight.instructions;
+    const Timing& timing = rules_.timing;
+    const std::uint32_t interval = timing.instruction_interval;
+    const std::uint32_t early = std::min(flight.shape->loads - 1, flight.instructions);
+    const std::uint32_t left = flight.instructions - early;
+    Scheduler& scheduler = scheduler_of(number);
+    scheduler.free = std::max(scheduler.free, time) + Cycle{flight.instructions} * interval;
+    statistics.issue.busy += static_cast<double>(flight.instructions) * interval;
     Cycle end = time;
     if (left > 0) {
-        const std::uint32_t chains = rules_.timing.dependent_chains;
-        end =
-            time + (left - 1) / chains * std::max(rules_.timing.instruction_latency, chains) + (left - 1) % chains + 1;
-        end = std::max(end, scheduler.free - early);
+        const std::uint32_t chains = timing.dependent_chains;
+        const std::uint32_t round = std::max(timing.instruction_latency, chains * interval);
+        end = time + Cycle{(left - 1) / chains} * round + (left - 1) % chains * interval + 1;
+        end = std::max(end, scheduler.free - Cycle{early} * interval);
     }
-    events_.push({end, slot});
+    events_.push({end, number});
 }
 
 unsigned TimedSm::pick(const Scheduler& scheduler, unsigned number) const {
@@ -139,7 +149,7 @@ unsigned TimedSm::pick(const Scheduler& scheduler, unsigned number) const {
     unsigned oldest = static_cast<unsigned>(std::countr_zero(scheduler.ready));
     for (std::uint64_t left = scheduler.ready; left; left &= left - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(left));
-        if (warps_[bit * schedulers_.size() + number].age < warps_[oldest * schedulers_.size() + number].age)
+        if (warps_[flight_of(number, bit) / per_warp_].age < warps_[flight_of(number, oldest) / per_warp_].age)
             oldest = bit;
     }
     return oldest;
@@ -148,31 +158,32 @@ unsigned TimedSm::pick(const Scheduler& scheduler, unsigned number) const {
 void TimedSm::issue(unsigned number, Cycle time) {
     Scheduler& scheduler = schedulers_[number];
     const unsigned bit = pick(scheduler, number);
-    const auto slot = static_cast<std::uint32_t>(bit * schedulers_.size() + number);
-    Warp& warp = warps_[slot];
+    const std::uint32_t chosen = flight_of(number, bit);
+    Flight& flight = flights_[chosen];
     scheduler.last = bit;
-    warp.first_issue = std::min(warp.first_issue, time);
-    if (++warp.issued == warp.shape->loads) scheduler.ready &= ~(std::uint64_t{1} << bit);
+    flight.first_issue = std::min(flight.first_issue, time);
+    if (++flight.issued == flight.shape->loads) scheduler.ready &= ~(std::uint64_t{1} << bit);
     ++scheduler.queued;
     scheduler.free = std::max(scheduler.free, time) + 1;
     statistics.issue.busy += 1;
     ++statistics.instructions;
     ++statistics.loads;
-    l1s_[slot % l1s_.size()].queue.push_back({time, slot});
+    l1s_[chosen / per_warp_ % l1s_.size()].queue.push_back({time, chosen});
 }
 
-/// Looks up one sector; false if the L1 has no room for another miss.
-bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t slot, std::uint64_t sector_number, Cycle time) {
-    Warp& warp = warps_[slot];
+/// Looks up one sector; false if the L1 has no room for another miss. `entry` is where its line was last, or 0.
+bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, std::uint64_t sector_number,
+                      std::uint32_t& entry, Cycle time) {
+    Flight& flight = flights_[flight_number];
     LevelAnswers& answers = statistics.l1;
-    warp.arrival = std::max(warp.arrival, time);
+    flight.arrival = std::max(flight.arrival, time);
     if (rules_.ideal.perfect_l1) {
         ++answers.hits;
         return true;
     }
     const std::uint64_t line = sector_number >> rules_.line_of_sector;
     const auto sector = static_cast<std::uint32_t>(sector_number & (rules_.sectors_per_line - 1));
-    std::uint32_t entry = l1.tags.find(line);
+    if (!l1.tags.holds(entry, line)) entry = l1.tags.find(line);
     const bool line_there = entry != SectorTags::none;
     std::size_t place = std::size_t{entry} * rules_.sectors_per_line + sector;
     const auto wait_here = [&] {
@@ -183,17 +194,17 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t slot, std::uint
         } else {
             free_waiter_ = waiting_[waiter].next;
         }
-        waiting_[waiter] = {slot, l1.waiters[place]};
+        waiting_[waiter] = {flight_number, l1.waiters[place]};
         l1.waiters[place] = waiter;
-        ++warp.unresolved;
+        ++flight.unresolved;
     };
     if (line_there && l1.tags.present(entry, sector)) {
-        const Cycle arrival = l1.tags.arrival(entry, sector);
-        if (arrival <= time) {
+        if (l1.tags.arrived(entry, sector, time)) {
             l1.tags.use(entry);
             ++answers.hits;
             return true;
         }
+        const Cycle arrival = l1.tags.arrival(entry, sector);
         if (l1.merges[place] >= rules_.timing.l1_mshr_merges) return false;
         l1.tags.use(entry);
         ++l1.merges[place];
@@ -201,14 +212,20 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t slot, std::uint
         if (arrival == SectorTags::unknown)
             wait_here();
         else
-            warp.arrival = std::max(warp.arrival, arrival);
+            flight.arrival = std::max(flight.arrival, arrival);
         return true;
     }
     for (; !l1.arrivals.empty() && l1.arrivals.front() <= time; l1.arrivals.pop()) --l1.under_way;
-    if (l1.under_way >= rules_.timing.l1_mshrs) return false;
+    if (l1.under_way >= rules_.timing.l1_mshrs) {
+        if (!line_there) entry = 0;
+        return false;
+    }
     if (!line_there) {
         entry = l1.tags.replace(rules_.l1_map(line), line, time);
-        if (entry == SectorTags::none) return false;
+        if (entry == SectorTags::none) {
+            entry = 0;
+            return false;
+        }
         place = std::size_t{entry} * rules_.sectors_per_line + sector;
         ++answers.line_misses;
     } else {
@@ -226,12 +243,12 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t slot, std::uint
 /// Serves the load at the head of the queue from this cycle on; returns when the port is free again.
 Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
     const Load load = l1.queue[l1.head];
-    Warp& warp = warps_[load.slot];
-    const LoadShape& shape = *warp.shape;
+    Flight& flight = flights_[load.flight];
+    const LoadShape& shape = *flight.shape;
     const Timing& timing = rules_.timing;
     const bool banks = timing.l1_port == L1Port::banks;
     const Cycle step = rules_.ideal.infinite_bandwidth ? 0 : 1;
-    const std::uint32_t k = warp.at_port;
+    const std::uint32_t k = flight.at_port;
     const auto most_sectors =
         std::max(1u, static_cast<std::uint32_t>(timing.l1_bytes_per_cycle / rules_.gpu.l1().sector_bytes));
     const Cycle begin = time;
@@ -239,12 +256,12 @@ Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
     std::uint64_t before = ~std::uint64_t{0};  // the sector looked up last, in this request
     if (l1.position > 0) {
         const std::uint32_t last = l1.position - 1;
-        const std::uint32_t element = warp.visit[last / 2];
-        if (!(last % 2 == 1 && warp.visit.ends_group(last / 2)))
+        const std::uint32_t element = flight.visit[last / 2];
+        if (!(last % 2 == 1 && flight.visit.ends_group(last / 2)))
             before = last % 2 == 0 ? shape.last_sector(element, k) : shape.first_sector(element, k);
     }
-    for (; l1.position < 2 * warp.visit.count(); ++l1.position) {
-        const std::uint32_t element = warp.visit[l1.position / 2];
+    for (; l1.position < 2 * flight.visit.count(); ++l1.position) {
+        const std::uint32_t element = flight.visit[l1.position / 2];
         const bool first = l1.position % 2 == 1;
         const std::uint64_t sector = first ? shape.first_sector(element, k) : shape.last_sector(element, k);
         if (sector != before) {
@@ -258,7 +275,7 @@ Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
                 used = tags = 0;
             }
             if (time >= end) return end;
-            if (!look_up(l1, number, load.slot, sector, time)) {
+            if (!look_up(l1, number, load.flight, sector, flight.entries[l1.position], time)) {
                 const Cycle retry = l1.arrivals.empty() ? end : std::max(time + 1, l1.arrivals.front());
                 return std::min(retry, end);
             }
@@ -266,9 +283,9 @@ Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
             tags += new_line;
             before = sector;
         }
-        if (first && warp.visit.ends_group(l1.position / 2)) {
+        if (first && flight.visit.ends_group(l1.position / 2)) {
             before = ~std::uint64_t{0};
-            if (l1.position + 1 < 2 * warp.visit.count()) {  // the next request has a cycle of its own
+            if (l1.position + 1 < 2 * flight.visit.count()) {  // the next request has a cycle of its own
                 time += step;
                 used = tags = 0;
             }
@@ -282,15 +299,15 @@ Cycle TimedSm::serve_port(L1& l1, std::uint8_t number, Cycle time, Cycle end) {
         l1.queue.clear();
         l1.head = 0;
     }
-    --schedulers_[load.slot % schedulers_.size()].queued;
-    if (++warp.at_port == shape.loads && warp.unresolved == 0) visit_done(load.slot);
+    --scheduler_of(load.flight).queued;
+    if (++flight.at_port == shape.loads && flight.unresolved == 0) visit_done(load.flight);
     return time;
 }
 
-void TimedSm::visit_done(std::uint32_t slot) {
-    Warp& warp = warps_[slot];
-    warp.computing = false;
-    events_.push({warp.arrival + rules_.timing.l1_latency, slot});
+void TimedSm::visit_done(std::uint32_t number) {
+    Flight& flight = flights_[number];
+    flight.computing = false;
+    events_.push({flight.arrival + rules_.timing.l1_latency, number});
 }
 
 void TimedSm::deliver(const MemorySide::Reply& reply) {
@@ -302,14 +319,14 @@ void TimedSm::deliver(const MemorySide::Reply& reply) {
     l1.waiters[place] = SectorTags::none;
     answer_free_ = std::max(answer_free_, reply.ready);
     while (waiter != SectorTags::none) {
-        const auto [slot, next] = waiting_[waiter];
+        const auto [number, next] = waiting_[waiter];
         waiting_[waiter].next = free_waiter_;
         free_waiter_ = waiter;
         waiter = next;
-        Warp& warp = warps_[slot];
-        warp.arrival = std::max(warp.arrival, answer_free_);
+        Flight& flight = flights_[number];
+        flight.arrival = std::max(flight.arrival, answer_free_);
         if (rules_.timing.answers_per_cycle) ++answer_free_;
-        if (--warp.unresolved == 0 && warp.at_port == warp.shape->loads) visit_done(slot);
+        if (--flight.unresolved == 0 && flight.at_port == flight.shape->loads) visit_done(number);
     }
 }
 
@@ -318,10 +335,10 @@ void TimedSm::run(Cycle end) {
         while (!events_.empty() && events_.top().time <= now_) {
             const Event event = events_.top();
             events_.pop();
-            if (warps_[event.slot].computing)
-                begin_visit(event.slot, event.time);
+            if (flights_[event.flight].computing)
+                begin_visit(event.flight, event.time);
             else
-                compute(event.slot, event.time);
+                compute(event.flight, event.time);
         }
         Cycle next = end;
         for (unsigned s = 0; s < schedulers_.size(); ++s) {

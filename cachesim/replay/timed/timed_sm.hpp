@@ -68,11 +68,20 @@ public:
     TimedStatistics statistics;
 
 private:
+    /// A resident warp.
     struct Warp {
         WarpPointer trace;
         const traces::Record *next = nullptr, *end = nullptr;
         const std::uint32_t* elements = nullptr;  ///< of `next`
+        std::uint64_t age = 0;                    ///< order of becoming resident
+        std::uint32_t flights = 0;                ///< that have not ended
+    };
+    /// A visit of a warp that is under way. A warp has Timing::accesses_in_flight of them at once; each takes the
+    /// warp's next access when it is done.
+    struct Flight {
         Visit visit;
+        /// By position in the visit (serve_port()): where the L1 held the sector that an earlier load looked up there.
+        std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
         const LoadShape* shape = nullptr;
         std::uint32_t issued = 0;      ///< loads of the visit
         std::uint32_t at_port = 0;     ///< loads of the visit that have passed the port
@@ -80,17 +89,18 @@ private:
         Cycle arrival = 0;             ///< of the latest sector so far
         Cycle first_issue = 0;
         std::uint32_t instructions = 0;
-        std::uint64_t age = 0;  ///< order of becoming resident
         bool computing = false;
     };
     struct Event {
         Cycle time;
-        std::uint32_t slot;
-        bool operator>(const Event& other) const { return time != other.time ? time > other.time : slot > other.slot; }
+        std::uint32_t flight;
+        bool operator>(const Event& other) const {
+            return time != other.time ? time > other.time : flight > other.flight;
+        }
     };
     struct Load {
         Cycle time;
-        std::uint32_t slot;
+        std::uint32_t flight;
     };
     /// One L1 with its port.
     struct L1 {
@@ -106,9 +116,9 @@ private:
         std::queue<Cycle> arrivals;   ///< of those whose arrival is known, in order
     };
     struct Waiter {
-        std::uint32_t slot, next;
+        std::uint32_t flight, next;
     };
-    /// One scheduler. Bit i: warp slot i * schedulers + its number.
+    /// One scheduler. Bit b: flight b mod per_warp of warp slot (b div per_warp) * schedulers + its number.
     struct Scheduler {
         std::uint64_t ready = 0;
         unsigned last = 63;
@@ -116,19 +126,27 @@ private:
         Cycle free = 0;            ///< when it has issued all instructions so far
     };
 
-    void begin_visit(std::uint32_t slot, Cycle);
-    void end_warp(std::uint32_t slot, Cycle);
-    void compute(std::uint32_t slot, Cycle);
+    Warp& warp_of(std::uint32_t flight) { return warps_[flight / per_warp_]; }
+    Scheduler& scheduler_of(std::uint32_t flight) { return schedulers_[flight / per_warp_ % schedulers_.size()]; }
+    std::uint32_t flight_of(unsigned scheduler, unsigned bit) const {
+        return static_cast<std::uint32_t>((bit / per_warp_ * schedulers_.size() + scheduler) * per_warp_ +
+                                          bit % per_warp_);
+    }
+
+    void begin_visit(std::uint32_t flight, Cycle);
+    void end_flight(std::uint32_t flight, Cycle);
+    void compute(std::uint32_t flight, Cycle);
     void issue(unsigned scheduler, Cycle);
     unsigned pick(const Scheduler&, unsigned number) const;
     Cycle serve_port(L1&, std::uint8_t number, Cycle, Cycle end);
-    bool look_up(L1&, std::uint8_t number, std::uint32_t slot, std::uint64_t sector, Cycle);
-    void visit_done(std::uint32_t slot);
-    Cycle end_of_instructions(const Warp&, Cycle data, Cycle issued) const;
+    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint64_t sector, std::uint32_t& entry, Cycle);
+    void visit_done(std::uint32_t flight);
 
     const TimedRules& rules_;
     const std::uint16_t number_;
     std::vector<Warp> warps_;                ///< by slot
+    std::vector<Flight> flights_;            ///< by slot * per_warp_ + number
+    std::uint32_t per_warp_;                 ///< flights of a warp
     std::vector<std::uint32_t> unfinished_;  ///< warps of each CTA slot
     std::vector<Scheduler> schedulers_;
     std::vector<L1> l1s_;

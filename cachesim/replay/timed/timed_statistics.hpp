@@ -15,6 +15,13 @@ struct LevelAnswers {
 
     std::uint64_t requests() const { return hits + merges + line_misses + sector_misses; }
     std::uint64_t misses() const { return line_misses + sector_misses; }
+    LevelAnswers& operator+=(const LevelAnswers& other) {
+        hits += other.hits;
+        merges += other.merges;
+        line_misses += other.line_misses;
+        sector_misses += other.sector_misses;
+        return *this;
+    }
     bool operator==(const LevelAnswers&) const = default;
 };
 
@@ -39,6 +46,9 @@ struct TimedStatistics {
 
     std::uint64_t visit_cycles =
         0;  ///< from the issue of a visit's first load to its last data, summed over warp accesses
+
+    /// Launches one after the other on the same GPU.
+    TimedStatistics& operator+=(const TimedStatistics&);
 };
 
 }  // namespace raycache::cachesim

@@ -1,0 +1,40 @@
+// Where a predicted speed-up comes from: the same two launches, replayed again with one cost taken away at a time.
+//
+// What remains of a speed-up when every look-up hits L1 is work and SIMT efficiency, not locality.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cachesim/replay/timed/memory_side.hpp"
+#include "cachesim/replay/timed/timed_statistics.hpp"
+
+namespace raycache::cachesim {
+
+struct NamedIdeal {
+    const char* name;     ///< "perfect L1"
+    const char* meaning;  ///< "every look-up in L1 hits"
+    Idealised ideal;
+};
+
+/// The replay as modelled, then each idealised one, in the order of a report.
+std::span<const NamedIdeal> idealised_replays();
+
+/// One of them, of both traces; sums over the same sample indices.
+struct SpeedUp {
+    NamedIdeal replay;
+    TimedStatistics base, other;
+
+    /// Cycles of the base over those of the other; above 1 the other is faster.
+    double value() const;
+};
+
+/// A table with one line per replay: cycles of both, their ratio, and for each trace how much faster it is than as
+/// modelled.
+std::string to_text(const std::vector<SpeedUp>&, const std::string& base, const std::string& other);
+
+/// The finding in plain words, from all of idealised_replays() in their order.
+std::string sentence(const std::vector<SpeedUp>&);
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,11 @@
+#include "cachesim/cache/policies/fifo.hpp"
+
+#include "cachesim/cache/policies/ways_in_place.hpp"
+
+namespace raycache::cachesim {
+
+std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, unsigned caches, const LineIds& ids, InstructionSet) {
+    return make_in_place<FifoOrder>(geometry, caches, ids);
+}
+
+}  // namespace raycache::cachesim

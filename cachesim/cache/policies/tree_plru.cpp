@@ -1,0 +1,12 @@
+#include "cachesim/cache/policies/tree_plru.hpp"
+
+#include "cachesim/cache/policies/ways_in_place.hpp"
+
+namespace raycache::cachesim {
+
+std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, unsigned caches, const LineIds& ids,
+                                      InstructionSet) {
+    return make_in_place<TreePlruOrder>(geometry, caches, ids);
+}
+
+}  // namespace raycache::cachesim

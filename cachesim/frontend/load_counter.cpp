@@ -1,0 +1,111 @@
+#include "cachesim/frontend/load_counter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// Lanes [first, first + count) of the mask, moved to bit 0.
+std::uint32_t group_of(std::uint32_t mask, unsigned first, unsigned count) {
+    return static_cast<std::uint32_t>(mask >> first & ((std::uint64_t{1} << count) - 1));
+}
+
+unsigned distinct_of(const std::uint32_t* elements, unsigned count) {
+    std::uint64_t low_bits = 0;  // bit b: an element with these six low bits has come
+    unsigned distinct = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        const std::uint64_t bit = std::uint64_t{1} << (elements[i] & 63);
+        unsigned first = i;
+        if (low_bits & bit)
+            for (first = 0; elements[first] != elements[i];) ++first;
+        distinct += first == i;
+        low_bits |= bit;
+    }
+    return distinct;
+}
+
+}  // namespace
+
+LoadCounter::LoadCounter(const std::vector<traces::Region>& regions, const FrontEnd& front_end, const LineShape& shape)
+    : sector_shift_(shape.sector_shift) {
+    for (const traces::Region& region : regions) regions_.push_back(make(region, front_end, shape));
+}
+
+LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEnd& front_end, const LineShape& shape) {
+    Loads loads;
+    loads.base = region.base;
+    loads.stride = region.stride;
+    loads.bytes = std::min(front_end.load_bytes, std::bit_ceil(region.element_size));
+    loads.count = (region.element_size + loads.bytes - 1) / loads.bytes;
+    loads.last_bytes = region.element_size - (loads.count - 1) * loads.bytes;
+    loads.lanes_per_request = loads.bytes >= 16  ? front_end.lanes_per_request_16
+                              : loads.bytes >= 8 ? front_end.lanes_per_request_8
+                                                 : front_end.lanes_per_request_4;
+
+    const std::uint64_t sector = shape.line_bytes / shape.sectors, place = region.base | region.stride;
+    const bool whole_loads = place % loads.bytes == 0 && loads.bytes <= sector;  // none straddles sectors
+    const bool apart = region.stride >= sector;
+    loads.requests_per_element = loads.count;
+    if (loads.lanes_per_request == traces::warp_lanes) {
+        const std::uint64_t sectors = (region.element_size + sector - 1) / sector;
+        if (loads.count == 1) {
+            loads.form = Form::from_sectors;
+            return loads;
+        }
+        if (whole_loads && place % sector == 0 && region.element_size <= region.stride &&
+            std::has_single_bit(sectors)) {
+            loads.form = Form::from_sectors;
+            loads.sectors_shift = std::countr_zero(sectors);
+            return loads;
+        }
+    }
+    if (whole_loads && apart) loads.form = Form::from_elements;
+    return loads;
+}
+
+unsigned LoadCounter::distinct(std::uint32_t mask, const std::uint32_t* elements, unsigned lanes_per_request) {
+    if (lanes_per_request == traces::warp_lanes)
+        return distinct_of(elements, static_cast<unsigned>(std::popcount(mask)));
+    if (lanes_per_request == 2) {
+        unsigned equal = 0;
+        for (std::uint32_t pairs = mask & mask >> 1 & 0x55555555; pairs; pairs &= pairs - 1) {
+            const int first = std::popcount(mask & ((pairs & (~pairs + 1)) - 1));
+            equal += elements[first] == elements[first + 1];
+        }
+        return static_cast<unsigned>(std::popcount(mask)) - equal;
+    }
+    unsigned sum = 0;
+    for (unsigned lane = 0; lane < traces::warp_lanes; lane += lanes_per_request) {
+        const auto lanes = static_cast<unsigned>(std::popcount(group_of(mask, lane, lanes_per_request)));
+        sum += distinct_of(elements, lanes);
+        elements += lanes;
+    }
+    return sum;
+}
+
+unsigned LoadCounter::general(const Loads& loads, std::uint32_t mask, const std::uint32_t* elements) const {
+    std::array<std::uint64_t, 5 * traces::warp_lanes> sectors;  // 16 bytes touch at most 5 sectors of 4
+    unsigned requests = 0;
+    for (unsigned lane = 0; lane < traces::warp_lanes; lane += loads.lanes_per_request) {
+        const auto lanes = static_cast<unsigned>(std::popcount(group_of(mask, lane, loads.lanes_per_request)));
+        for (std::uint32_t k = 0; k < loads.count; ++k) {
+            auto* end = sectors.data();
+            const std::uint64_t extra = (k + 1 == loads.count ? loads.last_bytes : loads.bytes) - 1;
+            for (unsigned i = 0; i < lanes; ++i) {
+                const std::uint64_t first = loads.base + elements[i] * loads.stride + std::uint64_t{k} * loads.bytes;
+                for (std::uint64_t s = first >> sector_shift_; s <= (first + extra) >> sector_shift_; ++s) *end++ = s;
+            }
+            std::sort(sectors.data(), end);
+            requests += static_cast<unsigned>(std::unique(sectors.data(), end) - sectors.data());
+        }
+        elements += lanes;
+    }
+    return requests;
+}
+
+}  // namespace raycache::cachesim

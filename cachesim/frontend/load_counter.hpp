@@ -1,0 +1,77 @@
+// How many load instructions a warp access is, and how many sectors they ask the tag stage for: what profilers count.
+//
+// An object is read by loads of FrontEnd::load_bytes, or of the next power of two above its size where that is less:
+// load k reads its bytes [k * load_bytes, (k + 1) * load_bytes), the last load perhaps fewer. All active lanes do each
+// load together, so a visit to a 64 B node is 4 loads. The lanes of one load go to the tag stage in groups of
+// neighbours (FrontEnd::lanes_per_request_*); within a group, a sector that several lanes read is asked for once.
+//
+// Only numbers: the look-ups of the replay are those of the whole visit (coalesce.hpp), where a sector is looked up
+// once. A further request for it hits, unless something evicts it between two loads of one visit.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cachesim/frontend/region_layout.hpp"
+#include "cachesim/gpus/gpu.hpp"
+#include "traces/header.hpp"
+
+namespace raycache::cachesim {
+
+struct LoadCount {
+    unsigned loads = 0;     ///< instructions of the warp
+    unsigned requests = 0;  ///< sectors asked for by all of them
+};
+
+class LoadCounter {
+public:
+    LoadCounter(const std::vector<traces::Region>&, const FrontEnd&, const LineShape&);
+
+    /// `mask`: the active lanes; `elements`: one index for each, lowest lane first; `sectors`: distinct sectors of all
+    /// of them.
+    LoadCount operator()(std::size_t region, std::uint32_t mask, const std::uint32_t* elements,
+                         unsigned sectors) const {
+        const Loads& loads = regions_[region];
+        switch (loads.form) {
+            case Form::from_sectors:
+                return {loads.count, (sectors >> loads.sectors_shift) * loads.requests_per_element};
+            case Form::from_elements:
+                return {loads.count, distinct(mask, elements, loads.lanes_per_request) * loads.requests_per_element};
+            case Form::general:
+                break;
+        }
+        return {loads.count, general(loads, mask, elements)};
+    }
+
+private:
+    enum class Form {
+        /// The whole warp goes together, and no two elements share a sector: the elements are as many as their sectors
+        /// over a power of two. Or there is one load, which asks for each sector once.
+        from_sectors,
+        /// No load straddles sectors, and elements are a sector or more apart: at the same place of two elements, their
+        /// loads read two sectors. So each load asks for as many sectors as there are distinct elements. Such are
+        /// triangles of 48 B: load k of element i reads in sector floor((48 i + 16 k) / 32), and 48 > 32.
+        from_elements,
+        general,
+    };
+    struct Loads {
+        Form form = Form::general;
+        std::uint32_t count = 0, bytes = 0, last_bytes = 0;  ///< last_bytes: of the last one
+        std::uint32_t lanes_per_request = 32;
+        std::uint32_t requests_per_element = 0;
+        int sectors_shift = 0;  ///< from_sectors: log2 of sectors per element
+        std::uint64_t base = 0, stride = 0;
+    };
+
+    static Loads make(const traces::Region&, const FrontEnd&, const LineShape&);
+
+    /// Distinct elements of each group, added up.
+    static unsigned distinct(std::uint32_t mask, const std::uint32_t* elements, unsigned lanes_per_request);
+    /// By the text above and nothing else.
+    unsigned general(const Loads&, std::uint32_t mask, const std::uint32_t* elements) const;
+
+    int sector_shift_;
+    std::vector<Loads> regions_;
+};
+
+}  // namespace raycache::cachesim
