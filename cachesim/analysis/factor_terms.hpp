@@ -7,9 +7,10 @@
 // Each quotient's numerator is the next one's denominator, so the product is exact for any counts.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "cachesim/replay/statistics.hpp"
 #include "cachesim/report/report.hpp"
@@ -29,24 +30,11 @@ struct FactorTerm {
     }
 };
 
-/// In the order of the identity.
-inline constexpr std::array<FactorTerm, 5> factor_terms{{
-    {"work", "work", "steps/ray", &Counters::steps, &Counters::rays, &Factors::work, "fewer steps per ray",
-     "more steps per ray"},
-    {"SIMT efficiency", "simt_efficiency", "warp accesses/step", &Counters::warp_accesses, &Counters::steps,
-     &Factors::simt_efficiency, "fewer warp accesses per step: less divergence",
-     "more warp accesses per step: more divergence"},
-    {"coalescing", "coalescing", "sectors/warp access", &Counters::sectors, &Counters::warp_accesses,
-     &Factors::coalescing, "fewer sectors per warp access: lanes share more of them",
-     "more sectors per warp access: lanes share fewer of them"},
-    {"L1 locality", "l1_locality", "L1 miss rate", &Counters::l2_sectors, &Counters::sectors, &Factors::l1_locality,
-     "lower L1 miss rate", "higher L1 miss rate"},
-    {"L2 locality", "l2_locality", "L2 miss rate", &Counters::dram_sectors, &Counters::l2_sectors,
-     &Factors::l2_locality, "lower L2 miss rate", "higher L2 miss rate"},
-}};
+/// In the order of the identity, for a GPU with so many levels of caches: 2 or 3.
+std::span<const FactorTerm> factor_terms(std::size_t levels);
 
 /// Each term of `other` over that of `base`; none where a quotient has no value.
-std::optional<Factors> traffic_factors(const Counters& base, const Counters& other);
+std::optional<Factors> traffic_factors(const Counters& base, const Counters& other, std::size_t levels);
 
 /// The term that does most for the ratio: of those that change the traffic in the direction of the product, the one
 /// furthest from 1.

@@ -45,7 +45,7 @@ Estimate l2_bytes_ratio(const Explanation& e) { return ratio(e, &Counters::l2_se
 
 std::string sentence(const Explanation& e) {
     const Counters base = e.base.totals(), other = e.other.totals();
-    const auto factors = traffic_factors(base, other);
+    const auto factors = traffic_factors(base, other, e.levels());
     if (!factors) return "There is no DRAM traffic per ray in both traces, so there is no ratio to explain.";
     const Estimate dram = dram_bytes_ratio(e), l2 = l2_bytes_ratio(e);
     const auto bytes = [&](const Counters& c) {
@@ -56,9 +56,9 @@ std::string sentence(const Explanation& e) {
                     e.other.name, change(dram.mean), e.base.name, bytes(other), bytes(base), change(l2.mean));
     if (const auto most = main_term(*factors))
         text += fmt::format("; {} does most, x{:.3f} ({})", most->term->name, most->factor, most->meaning());
-    text += fmt::format("; with equal miss rates x{:.3f} would remain, the L1 and L2 miss rates give x{:.3f}",
+    text += fmt::format("; with equal miss rates x{:.3f} would remain, the miss rates give x{:.3f}",
                         factors->work * factors->simt_efficiency * factors->coalescing,
-                        factors->l1_locality * factors->l2_locality);
+                        factors->l1_locality * factors->l2_locality * factors->l3_locality);
     if (!dram.half_width) return text + "; from one sample index, so without a confidence interval.";
     if (certain(dram)) return text + ".";
     return text + fmt::format("; but with {} sample indices the ratio is {:.3f} ±{:.3f}, no certain difference.",

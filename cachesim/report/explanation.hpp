@@ -30,6 +30,8 @@ struct Explanation {
     ExplainedTrace base, other;  ///< of the same sample indices
     /// The timed replays of idealised_replays(); empty if the GPU has no [timing].
     std::vector<SpeedUp> speed_ups;
+
+    std::size_t levels() const { return base.findings.levels.size(); }  ///< of the GPU's caches
 };
 
 /// Readable in 110 columns.

@@ -64,9 +64,9 @@ Json trace(const ExplainedTrace& t) {
     return json;
 }
 
-Json factors(const Counters& base, const Counters& other) {
+Json factors(const Counters& base, const Counters& other, std::size_t levels) {
     Json json = Json::object();
-    for (const FactorTerm& term : factor_terms)
+    for (const FactorTerm& term : factor_terms(levels))
         json[term.key] = {{"base", number(term.value(base))},
                           {"other", number(term.value(other))},
                           {"factor", number(term.value(other) / term.value(base))}};
@@ -87,7 +87,7 @@ Json groups(const Explanation& e) {
                 json.push_back({{"group", base.name},
                                 {"base", counters(sum(base))},
                                 {"other", counters(sum(other))},
-                                {"factors", factors(sum(base), sum(other))}});
+                                {"factors", factors(sum(base), sum(other), e.levels())}});
     return json;
 }
 
@@ -99,7 +99,7 @@ std::string to_json(const Explanation& e) {
     for (const LaunchStatistics& launch : e.base.launches) samples.push_back(launch.sample);
     json["dram_bytes_ratio"] = estimate(dram_bytes_ratio(e));
     json["l2_bytes_ratio"] = estimate(l2_bytes_ratio(e));
-    json["factors"] = factors(e.base.totals(), e.other.totals());
+    json["factors"] = factors(e.base.totals(), e.other.totals(), e.levels());
     json["groups"] = groups(e);
     json["base"] = trace(e.base);
     json["other"] = trace(e.other);

@@ -79,7 +79,7 @@ std::string identity_table(const Explanation& e) {
     table.column("", Align::left);
     for (const std::string& title : {e.base.name, e.other.name, std::string("ratio")})
         table.column(title, Align::right);
-    for (const FactorTerm& term : factor_terms)
+    for (const FactorTerm& term : factor_terms(e.levels()))
         table.row({term.name, term.quantity, figure(term.value(base)), figure(term.value(other)),
                    decimals(term.value(other) / term.value(base), 3)});
     const auto bytes = [&](const char* name, std::uint64_t Counters::*sectors, const Estimate& ratio) {
@@ -92,10 +92,10 @@ std::string identity_table(const Explanation& e) {
 }
 
 std::string bars(const Explanation& e) {
-    const auto factors = traffic_factors(e.base.totals(), e.other.totals());
+    const auto factors = traffic_factors(e.base.totals(), e.other.totals(), e.levels());
     if (!factors || !(factors->product() > 0)) return {};
     std::vector<WaterfallStep> steps;
-    for (const FactorTerm& term : factor_terms) {
+    for (const FactorTerm& term : factor_terms(e.levels())) {
         steps.push_back({term.name, (*factors).*term.factor});
         if (term.factor == &Factors::l1_locality) steps.push_back({"= L2-to-L1 bytes", 1, true});
     }
@@ -114,7 +114,7 @@ std::string group_table(const Explanation& e) {
     TextTable table;
     table.column("group", Align::left);
     for (const char* title : {"base", "other", "ratio"}) table.column(title, Align::right);
-    for (const FactorTerm& term : factor_terms) table.column(term.name, Align::right);
+    for (const FactorTerm& term : factor_terms(e.levels())) table.column(term.name, Align::right);
     table.column("change %", Align::right);
     for (const LaunchGroup& group : groups) {
         const auto match =
@@ -123,7 +123,8 @@ std::string group_table(const Explanation& e) {
         const double before = e.sector_bytes * quotient(base.dram_sectors, base.rays);
         const double after = e.sector_bytes * quotient(other.dram_sectors, other.rays);
         std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(after / before, 3)};
-        for (const FactorTerm& term : factor_terms) cells.push_back(decimals(term.value(other) / term.value(base), 3));
+        for (const FactorTerm& term : factor_terms(e.levels()))
+            cells.push_back(decimals(term.value(other) / term.value(base), 3));
         cells.push_back(decimals(100 * per_all(base, other) / per_all(base_all, other_all), 1));
         table.row(std::move(cells));
     }
@@ -232,7 +233,7 @@ std::string to_text(const Explanation& e) {
         samples += fmt::format("{}{}", samples.empty() ? "" : ", ", launch.sample);
     std::string text = wrapped(fmt::format("{} against {}: {}, N {}, sample indices {}, GPU {}", e.other.name,
                                            e.base.name, e.scene, e.spp, samples, e.gpu));
-    text += fmt::format("\nTraffic: {} B x the product of five factors\n\n", e.sector_bytes) + identity_table(e);
+    text += fmt::format("\nTraffic: {} B x the product of these factors\n\n", e.sector_bytes) + identity_table(e);
     text += bars(e);
     if (e.by != GroupBy::none) text += group_table(e);
     text += class_table(e) + place_table(e) + sharing_table(e);

@@ -63,7 +63,7 @@ Explanation explanation(const std::vector<Counters>& base, const std::vector<Cou
 }  // namespace
 
 TEST_CASE("the factors of two hand-made counts multiply to their ratio of DRAM bytes per ray") {
-    const auto f = traffic_factors(plain, better);
+    const auto f = traffic_factors(plain, better, 2);
     REQUIRE(f);
     CHECK(f->work == 1);
     CHECK(f->simt_efficiency == 0.5);
@@ -71,16 +71,28 @@ TEST_CASE("the factors of two hand-made counts multiply to their ratio of DRAM b
     CHECK(f->l1_locality == 1);
     CHECK(f->l2_locality == 1.5);
     CHECK(f->product() == 0.75);
-    CHECK_FALSE(traffic_factors(plain, counters(10, 0, 0, 0, 0, 0)));
+    CHECK_FALSE(traffic_factors(plain, counters(10, 0, 0, 0, 0, 0), 2));
+}
+
+TEST_CASE("an L3 has a factor of its own") {
+    Counters base = plain, other = better;
+    base.l3_sectors = 160;
+    other.l3_sectors = 80;
+    const auto f = traffic_factors(base, other, 3);
+    REQUIRE(f);
+    CHECK(f->l2_locality == 1);
+    CHECK(f->l3_locality == 1.5);
+    CHECK(f->product() == 0.75);
+    CHECK(factor_terms(3).size() == 6);
 }
 
 TEST_CASE("the main term is the one that moves furthest in the direction of the whole") {
-    const auto most = main_term(*traffic_factors(plain, better));
+    const auto most = main_term(*traffic_factors(plain, better, 2));
     REQUIRE(most);
     CHECK(std::string(most->term->name) == "SIMT efficiency");
     CHECK(most->share > 1);  // L2 locality works against it
     CHECK_THAT(most->meaning(), Contains("less divergence"));
-    const auto worse = main_term(*traffic_factors(better, plain));
+    const auto worse = main_term(*traffic_factors(better, plain, 2));
     REQUIRE(worse);
     CHECK(worse->factor == 2);
     CHECK_THAT(worse->meaning(), Contains("more divergence"));
@@ -91,7 +103,7 @@ TEST_CASE("the sentence says how much, what does most, and what is a matter of c
     const std::string one = sentence(explanation({plain}, {better}));
     CHECK_THAT(one, StartsWith("clever reads 25.0 % fewer DRAM bytes per ray than plain (192.0 against 256.0) and "
                                "50.0 % fewer L2-to-L1 bytes; SIMT efficiency does most, x0.500 "));
-    CHECK_THAT(one, Contains("with equal miss rates x0.500 would remain, the L1 and L2 miss rates give x1.500"));
+    CHECK_THAT(one, Contains("with equal miss rates x0.500 would remain, the miss rates give x1.500"));
     CHECK_THAT(one, EndsWith("from one sample index, so without a confidence interval."));
     CHECK_THAT(sentence(explanation({plain, plain}, {better, better})), EndsWith("give x1.500."));
 }
