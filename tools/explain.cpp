@@ -22,6 +22,7 @@ struct Options {
     SamplingOptions sampling;
     ReportOptions gpus;
     std::string heat_map;
+    bool counts_only = false;
     ThreadOptions threads;
 };
 
@@ -34,6 +35,7 @@ void explain_and_print(const Options& o, const std::vector<LaunchSource>& source
     request.by = o.gpus.by == "bounce" ? cachesim::GroupBy::bounce
                  : o.gpus.by == "ray"  ? cachesim::GroupBy::ray
                                        : cachesim::GroupBy::none;
+    request.timed = !o.counts_only;
     request.pixels = !o.heat_map.empty();
     const Explained done = explain(request);
     const cachesim::Explanation& e = done.explanation;
@@ -96,6 +98,7 @@ void add_explain(CLI::App& app) {
         ->check(CLI::IsMember({"none", "bounce", "ray"}))
         ->capture_default_str();
     command->add_flag("--json", o->gpus.json, "print JSON");
+    command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
     command->add_option("--heatmap", o->heat_map,
                         "FILE.exr: DRAM bytes, L1 miss rate and active lanes of each pixel; FILE.png shows them");
     o->scene.add(*command, false);

@@ -99,7 +99,7 @@ Explained explain(const ExplainRequest& request) {
         traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
-    if (gpu.timing)
+    if (gpu.timing && request.timed)
         for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
             explanation.speed_ups.push_back({ideal, {}, {}});
 

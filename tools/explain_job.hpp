@@ -18,6 +18,7 @@ struct ExplainRequest {
     std::array<std::string, 2> names;            ///< of files or strategies, for messages
     cachesim::Gpu gpu;
     cachesim::GroupBy by = cachesim::GroupBy::none;
+    bool timed = true;    ///< whether predicted times are wanted, if the GPU has a [timing]
     bool pixels = false;  ///< whether costs of pixels are wanted
 };
 

@@ -46,9 +46,9 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
     using Align = TextTable::Align;
     TextTable table;
     table.column("replay", Align::left);
-    table.column("cycles, " + base, Align::right);
+    table.column("base cycles", Align::right);
     table.column("gain", Align::right);
-    table.column("cycles, " + other, Align::right);
+    table.column("other cycles", Align::right);
     table.column("gain", Align::right);
     table.column("speed-up", Align::right);
     for (const SpeedUp& s : all)
@@ -56,7 +56,7 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
             {s.replay.name, fmt::format("{}", s.base.cycles),
              fmt::format("{:.2f}", ratio(all.front().base.cycles, s.base.cycles)), fmt::format("{}", s.other.cycles),
              fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)), fmt::format("{:.3f}", s.value())});
-    std::string text = table.text() + "\n";
+    std::string text = table.text() + fmt::format("\nbase: {}; other: {}\n", base, other);
     for (const SpeedUp& s : all)
         if (*s.replay.meaning) text += fmt::format("{}: {}\n", s.replay.name, s.replay.meaning);
     return text;

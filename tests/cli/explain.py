@@ -4,7 +4,7 @@ import struct
 
 from support import GPU, LAUNCHES, SCENE, ProgramTest, main
 
-FUSED = ["explain", "--scene", *SCENE, *LAUNCHES, *GPU]
+FUSED = ["explain", "--scene", *SCENE, *LAUNCHES, *GPU, "--counts-only"]
 CLASSES = ("compulsory", "capacity", "conflict")
 
 
@@ -26,11 +26,11 @@ class Explain(ProgramTest):
                 self.capture(f"{name}.rct", "--strategy", name) for name in names]
 
     def explained(self, *options):
-        return self.succeeds("explain", *self.traces(), *GPU, *options)
+        return self.succeeds("explain", *self.traces(), *GPU, "--counts-only", *options)
 
     def test_the_factors_multiply_to_the_ratio_of_dram_bytes_per_ray_that_compare_finds(self):
         base, other = self.traces()
-        report = self.succeeds("explain", base, other, *GPU, "--json").json
+        report = self.succeeds("explain", base, other, *GPU, "--counts-only", "--json").json
         product = 1
         for factor in report["factors"].values():
             product *= factor["factor"]
@@ -74,7 +74,10 @@ class Explain(ProgramTest):
                     self.assertEqual(sum(group[side][key] for group in report["groups"]), value, key)
 
     def test_the_text_has_every_part_in_110_columns_and_ends_with_a_sentence(self):
-        text = self.explained("--by", "bounce").text
+        text = self.succeeds("explain", *self.traces(), *GPU, "--by", "bounce").text
+        self.assertRegex(text, r"[\d.]+x predicted; [\d.]+x would remain with perfect caches")
+        for replay in ("as modelled", "perfect L1", "perfect L2", "infinite bandwidth", "no added latency", "full warps"):
+            self.assertIn(replay, text)
         for part in ("coherent against cranley-patterson", "SIMT efficiency", "logarithmic", "share of the change",
                      "compulsory", "depth 0-3", "triangles", "shadow 0", "another CTA", "◄"):
             self.assertIn(part, text)
@@ -91,10 +94,10 @@ class Explain(ProgramTest):
 
     def test_a_trace_explained_by_itself_has_only_ones(self):
         trace = self.capture()
-        report = self.succeeds("explain", trace, trace, *GPU, "--json").json
+        report = self.succeeds("explain", trace, trace, *GPU, "--counts-only", "--json").json
         self.assertEqual({factor["factor"] for factor in report["factors"].values()}, {1})
         self.assertEqual(report["base"]["levels"], report["other"]["levels"])
-        self.succeeds("explain", trace, trace, *GPU)
+        self.succeeds("explain", trace, trace, *GPU, "--counts-only")
 
     def test_a_heat_map_is_an_exr_of_six_channels_and_a_png_beside_it(self):
         printed = self.explained("--heatmap", "why.exr", "--threads", "2").text
@@ -113,6 +116,15 @@ class Explain(ProgramTest):
 
     def test_a_warp_of_one_pixel_has_a_heat_map_too(self):
         self.succeeds(*FUSED, "--thread-map", "samples", "--heatmap", "s.exr")
+
+    def test_predicted_times_are_those_of_a_timed_comparison(self):
+        base, other = self.traces()
+        rows = self.succeeds("compare", base, other, *GPU, "--timed", "--json").json["rows"]
+        report = self.succeeds("explain", base, other, *GPU, "--json").json
+        as_modelled = report["timed"][0]
+        self.assertEqual((as_modelled["base_cycles"], as_modelled["other_cycles"]), (rows[0]["cycles"], rows[1]["cycles"]))
+        self.assertTrue(all(t["base_cycles"] <= as_modelled["base_cycles"] for t in report["timed"][1:]))
+        self.assertIn("predicted", report["time_sentence"])
 
     def test_compare_says_in_one_line_which_factor_does_most(self):
         text = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, *GPU).text

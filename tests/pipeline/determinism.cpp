@@ -92,7 +92,7 @@ TEST_CASE("a trace file holds the very warps that the fused path replays") {
 
 TEST_CASE("which lanes read is nothing to the caches: rotated masks give equal counters") {
     const tracer::Capture capture(small_courtyard(), small_settings("cranley-patterson"));
-    const cachesim::Gpu gpu = cachesim::load_gpu("gtx-980-ti");
+    const cachesim::Gpu gpu = cachesim::load_gpu("rtx-3070");  // whole warps go to the tag stage
     cachesim::Replay permuted(gpu, capture.header().regions, capture.header().launches[0]);
     const auto worker = capture.make_worker();
     for (std::uint32_t w = 0; w < capture.header().warps_per_launch; ++w) {
