@@ -240,8 +240,8 @@ std::string to_text(const Explanation& e) {
     if (!e.speed_ups.empty())
         text +=
             "\nPredicted time, and what is left of the speed-up when one cost is taken away\n"
-                "(gain: how much faster than as modelled)\n\n" +
-                to_text(e.speed_ups, e.base.name, e.other.name);
+            "(gain: how much faster than as modelled)\n\n" +
+            to_text(e.speed_ups, e.base.name, e.other.name);
     text += '\n' + wrapped(sentence(e));
     return e.speed_ups.empty() ? text : text + wrapped(sentence(e.speed_ups));
 }
