@@ -53,18 +53,24 @@ void decode(benchmark::State& state) {
     }
 }
 
+using Warps = std::vector<std::shared_ptr<const traces::WarpTrace>>;
+
+/// All warps of the file, decoded.
+Warps all_warps(const traces::Reader& reader) {
+    Warps all;
+    std::vector<traces::WarpTrace> warps;
+    for (std::size_t b = 0; b < reader.blocks().size(); ++b) {
+        reader.read_block(b, warps);
+        for (traces::WarpTrace& w : warps) all.push_back(std::make_shared<const traces::WarpTrace>(std::move(w)));
+    }
+    return all;
+}
+
 /// `decoded`: warps stand in memory, as in the fused pipeline; else the time to decode them counts.
 void replay(benchmark::State& state, const char* gpu_name, bool decoded) {
     const traces::Reader reader(trace_file().path());
     const cachesim::Gpu gpu = cachesim::load_gpu(gpu_name);
-    std::vector<std::shared_ptr<const traces::WarpTrace>> all;
-    if (decoded) {
-        std::vector<traces::WarpTrace> warps;
-        for (std::size_t b = 0; b < reader.blocks().size(); ++b) {
-            reader.read_block(b, warps);
-            for (traces::WarpTrace& w : warps) all.push_back(std::make_shared<const traces::WarpTrace>(std::move(w)));
-        }
-    }
+    const Warps all = decoded ? all_warps(reader) : Warps{};
     for (auto _ : state) {
         const double start = thread_seconds();
         cachesim::Replay model(gpu, reader.header().regions, reader.header().launches.front());
@@ -85,12 +91,7 @@ void replay(benchmark::State& state, const char* gpu_name, bool decoded) {
 void timed_replay(benchmark::State& state, const char* gpu_name) {
     const traces::Reader reader(trace_file().path());
     const cachesim::Gpu gpu = cachesim::load_gpu(gpu_name);
-    std::vector<std::shared_ptr<const traces::WarpTrace>> all;
-    std::vector<traces::WarpTrace> warps;
-    for (std::size_t b = 0; b < reader.blocks().size(); ++b) {
-        reader.read_block(b, warps);
-        for (traces::WarpTrace& w : warps) all.push_back(std::make_shared<const traces::WarpTrace>(std::move(w)));
-    }
+    const Warps all = all_warps(reader);
     for (auto _ : state) {
         const double start = thread_seconds();
         cachesim::TimedReplay model(gpu, reader.header().regions, reader.header().launches.front());
