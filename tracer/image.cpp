@@ -101,7 +101,7 @@ void check_size(const std::string& path, std::uint32_t width, std::uint32_t heig
 }
 
 /// Encodes in memory, which leaves nothing on the disk when it fails, then writes the file.
-void write_encoded(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+void write_encoded(const std::string& path, const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                    const void* texels) {
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) fail_to_encode(path, OIIO::geterror());
@@ -115,7 +115,7 @@ void write_encoded(const std::string& path, const char* format, const OIIO::Imag
     file.commit();
 }
 
-OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height, int channels, OIIO::TypeDesc type) {
+OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height, int channels, const OIIO::TypeDesc& type) {
     OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), channels, type);
     spec.attribute("DateTime", "");  // else the time of day: the same picture would give other bytes
     return spec;
