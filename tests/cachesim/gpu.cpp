@@ -8,6 +8,7 @@
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/gpus/presets.hpp"
+#include "tests/folders.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
@@ -85,7 +86,7 @@ TEST_CASE("every preset loads under its file name, with a source beside every nu
             CHECK_FALSE(value.value.empty());
             CHECK_FALSE(value.source.empty());
         }
-        const std::string path = RAYCACHE_SOURCE_DIR "/cachesim/gpus/" + preset.name + ".toml";
+        const std::string path = raycache::test::source_folder() + "cachesim/gpus/" + preset.name + ".toml";
         CHECK(load_gpu(path).levels[1].bytes() == load_gpu(preset.name).levels[1].bytes());
     }
 }

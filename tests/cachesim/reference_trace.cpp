@@ -1,4 +1,5 @@
 #include "reference_trace.hpp"
+#include "tests/folders.hpp"
 
 #include <zstd.h>
 
@@ -44,7 +45,7 @@ T take(const std::string& bytes, std::size_t& at) {
 
 std::optional<std::string> reference_folder() {
     if (const char* folder = std::getenv("RAYCACHE_REFERENCE")) return folder;
-    const std::string beside = RAYCACHE_SOURCE_DIR "/../shared/reference";
+    const std::string beside = raycache::test::source_folder() + "../shared/reference";
     if (std::filesystem::exists(beside + "/cp.rtw.zst")) return beside;
     return std::nullopt;
 }

@@ -1,7 +1,6 @@
 // Scene -> capture -> replay, per sample index, for tests that ask what a strategy does to the caches.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cachesim/replay/replay.hpp"
+#include "tests/folders.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 
@@ -25,11 +25,7 @@ inline const tracer::PreparedScene* find_scene(const std::string& name) {
     tracer::SceneRequest request;
     request.source = name;
     if (name.ends_with(".glb")) {
-        const char* folder = std::getenv("RAYCACHE_SCENES");
-        const std::filesystem::path path =
-            (folder != nullptr ? std::filesystem::path(folder)
-                               : std::filesystem::path(RAYCACHE_SOURCE_DIR) / ".." / "shared" / "scenes") /
-            name;
+        const std::filesystem::path path = std::filesystem::path(scenes_folder()) / name;
         if (!std::filesystem::exists(path)) return nullptr;
         request.source = path.string();
     }

@@ -4,6 +4,7 @@
 
 #include "embree_comparison.hpp"
 #include "path_rays.hpp"
+#include "tests/folders.hpp"
 
 using namespace raycache::tracer;
 using namespace raycache::tracer::test;
@@ -88,7 +89,7 @@ TEST_CASE("embree: hits equal Embree's on a million rays in each real scene", "[
     for (const char* name : {"cornell_box", "wooden_staircase", "sponza", "contemporary_bathroom", "white_room",
                              "country_kitchen", "bistro_interior", "san_miguel"}) {
         DYNAMIC_SECTION(name) {
-            const std::string path = scenes_folder() + "/" + name + ".glb";
+            const std::string path = raycache::test::scenes_folder() + "/" + name + ".glb";
             if (!std::filesystem::exists(path)) {
                 WARN(path << " is absent: not compared");
                 continue;

@@ -1,8 +1,8 @@
 // The scenes of SCENES.md, where they are at hand: RAYCACHE_SCENES, or ../shared/scenes beside the source folder.
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 
+#include "tests/folders.hpp"
 #include "tests/tracer/gltf_files.hpp"
 
 using namespace raycache;
@@ -103,11 +103,6 @@ const std::vector<ExpectedScene> expected_scenes{
      {{"original", {2.78F, 2.73F, 8}, {2.78F, 2.73F, 0}, 39.3F}}},
 };
 
-std::string scene_folder() {
-    if (const char* folder = std::getenv("RAYCACHE_SCENES")) return folder;
-    return std::string(RAYCACHE_SOURCE_DIR) + "/../shared/scenes";
-}
-
 std::size_t count_emissive(const Scene& scene) {
     std::size_t count = 0;
     for (const std::uint16_t m : scene.material_of) count += max_component(scene.materials[m].emission) > 0;
@@ -129,7 +124,7 @@ std::size_t count_without_area(const Scene& scene) {
 
 TEST_CASE("each real scene has the triangles, materials, bounds and cameras that SCENES.md lists", "[slow]") {
     for (const ExpectedScene& expected : expected_scenes) {
-        const std::string path = scene_folder() + "/" + expected.file;
+        const std::string path = raycache::test::scenes_folder() + "/" + expected.file;
         if (!std::filesystem::exists(path)) {
             WARN("skipped, not found: " << path);
             continue;
@@ -160,7 +155,7 @@ TEST_CASE("each real scene has the triangles, materials, bounds and cameras that
 }
 
 TEST_CASE("fronts agree with the stored normals in the scene that mirrors instances", "[slow]") {
-    const std::string path = scene_folder() + "/san_miguel.glb";
+    const std::string path = raycache::test::scenes_folder() + "/san_miguel.glb";
     if (!std::filesystem::exists(path)) {
         WARN("skipped, not found: " << path);
         return;

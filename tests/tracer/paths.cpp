@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "path_rays.hpp"
+#include "tests/folders.hpp"
 #include "tracer/bvh/embree_reference.hpp"
 #include "tracer/paths/surface.hpp"
 
@@ -194,7 +195,7 @@ TEST_CASE("paths: a picture is the same with Embree in the traversal's place") {
 }
 
 TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's place", "[slow]") {
-    const std::string path = scenes_folder() + "/cornell_box.glb";
+    const std::string path = raycache::test::scenes_folder() + "/cornell_box.glb";
     if (!std::filesystem::exists(path)) {
         WARN(path << " is absent: not compared");
         return;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,12 +65,6 @@ inline std::vector<bool> any_hits(const PreparedScene& scene, std::span<const Ra
             hits[first + lane] = ((occluded >> lane) & 1U) != 0;
     });
     return hits;
-}
-
-/// Where the real scenes lie; they are no part of the repository.
-inline std::string scenes_folder() {
-    const char* given = std::getenv("RAYCACHE_SCENES");
-    return given != nullptr ? given : RAYCACHE_SOURCE_DIR "/../shared/scenes";
 }
 
 inline Ray ray_to(Vec3 from, Vec3 to) {

@@ -9,6 +9,7 @@
 #include "dump.hpp"
 #include "files.hpp"
 #include "samples.hpp"
+#include "tests/folders.hpp"
 #include "traces/compression.hpp"
 #include "traces/reader.hpp"
 #include "traces/verify.hpp"
@@ -18,7 +19,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::string folder = RAYCACHE_SOURCE_DIR "/traces/golden/";
+const std::string folder = raycache::test::source_folder() + "traces/golden/";
 
 /// The worked example of FORMAT.md: one lane visits the root, its second child's two triangles, its first child's one.
 Sample example() {
@@ -168,7 +169,7 @@ TEST_CASE("every golden file is one that the tests know") {
 }
 
 TEST_CASE("the hexadecimal example of FORMAT.md is the golden file") {
-    std::ifstream in(RAYCACHE_SOURCE_DIR "/traces/FORMAT.md");
+    std::ifstream in(raycache::test::source_folder() + "traces/FORMAT.md");
     Bytes bytes;
     for (std::string line; std::getline(in, line);) {
         if (!line.starts_with("    0x")) continue;  // 0xOFFSET: up to 16 bytes, two spaces, words

@@ -5,12 +5,13 @@
 #include "dump.hpp"
 #include "files.hpp"
 #include "samples.hpp"
+#include "tests/folders.hpp"
 
 namespace {
 
 std::string python_dump(const std::string& path) {
     const std::string command =
-        "/usr/bin/python3 " RAYCACHE_SOURCE_DIR "/traces/read_trace.py '" + path + "' --dump 2>&1";
+        "/usr/bin/python3 " + raycache::test::source_folder() + "traces/read_trace.py '" + path + "' --dump 2>&1";
     std::FILE* pipe = ::popen(command.c_str(), "r");
     REQUIRE(pipe != nullptr);
     std::string text;
@@ -30,7 +31,8 @@ void check_same(const std::string& path) {
 }  // namespace
 
 TEST_CASE("the Python reader sees what the C++ reader sees in the golden files") {
-    for (const auto& entry : std::filesystem::directory_iterator(RAYCACHE_SOURCE_DIR "/traces/golden/good"))
+    for (const auto& entry :
+         std::filesystem::directory_iterator(raycache::test::source_folder() + "traces/golden/good"))
         if (entry.path().extension() == ".rct") check_same(entry.path());
 }
 
