@@ -75,9 +75,6 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
 
 Explained explain(const ExplainRequest& request) {
     check_comparable(request);
-    if (request.gpu.levels.size() != 2)
-        throw UsageError(fmt::format("--gpu {}; expected a GPU of two levels of caches to explain, found {}",
-                                     request.gpu.name, request.gpu.levels.size()));
     const auto names = names_of(request);
     const cachesim::Gpu& gpu = request.gpu;
     const Header& first = *request.sources[0]->header;
@@ -99,7 +96,7 @@ Explained explain(const ExplainRequest& request) {
         traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
-    if (gpu.timing && request.timed)
+    if (gpu.timing && request.timed && gpu.levels.size() == 2)  // what the timed replay can do
         for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
             explanation.speed_ups.push_back({ideal, {}, {}});
 

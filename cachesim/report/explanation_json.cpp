@@ -25,9 +25,11 @@ Json counts(const MissCounts& c) {
 }
 
 /// The members of Counters that are no quotient of others.
-Json counters(const Counters& c) {
-    return {{"rays", c.rays},       {"steps", c.steps},           {"warp_accesses", c.warp_accesses},
-            {"sectors", c.sectors}, {"l2_sectors", c.l2_sectors}, {"dram_sectors", c.dram_sectors}};
+Json counters(const Counters& c, std::size_t levels) {
+    Json json{{"rays", c.rays},       {"steps", c.steps},           {"warp_accesses", c.warp_accesses},
+              {"sectors", c.sectors}, {"l2_sectors", c.l2_sectors}, {"dram_sectors", c.dram_sectors}};
+    if (levels == 3) json["l3_sectors"] = c.l3_sectors;
+    return json;
 }
 
 Json level(const LevelFindings& found) {
@@ -55,7 +57,7 @@ Json level(const LevelFindings& found) {
 }
 
 Json trace(const ExplainedTrace& t) {
-    Json json{{"name", t.name}, {"totals", counters(t.totals())}};
+    Json json{{"name", t.name}, {"totals", counters(t.totals(), t.findings.levels.size())}};
     Json& levels = json["levels"] = Json::object();
     for (std::size_t i = 0; i < t.findings.levels.size(); ++i)
         levels[fmt::format("l{}", i + 1)] = level(t.findings.levels[i]);
@@ -85,8 +87,8 @@ Json groups(const Explanation& e) {
         for (const LaunchGroup& other : others)
             if (base.name == other.name)
                 json.push_back({{"group", base.name},
-                                {"base", counters(sum(base))},
-                                {"other", counters(sum(other))},
+                                {"base", counters(sum(base), e.levels())},
+                                {"other", counters(sum(other), e.levels())},
                                 {"factors", factors(sum(base), sum(other), e.levels())}});
     return json;
 }

@@ -65,6 +65,20 @@ class Explain(ProgramTest):
                 self.assertEqual(deep, solid)
                 self.assertEqual(level["by_depth"][0]["depth"], 0)
 
+    def test_a_cpu_is_explained_over_its_three_levels(self):
+        explained = ["explain", *self.traces(), "--gpu", "xeon-8380"]
+        report = self.succeeds(*explained, "--json").json
+        self.assertEqual({key for key in report["factors"] if key[0] == "l"}, {"l1_locality", "l2_locality", "l3_locality"})
+        for side in ("base", "other"):
+            totals, levels = report[side]["totals"], report[side]["levels"]
+            for level, above, below in (("l1", "sectors", "l2_sectors"), ("l2", "l2_sectors", "l3_sectors"),
+                                        ("l3", "l3_sectors", "dram_sectors")):
+                self.assertEqual(levels[level]["all"]["lookups"], totals[above])
+                self.assertEqual(levels[level]["all"]["misses"], totals[below])
+        text = self.succeeds(*explained).text
+        self.assertIn("L3   capacity", text)
+        self.assertLessEqual(max(len(line) for line in text.splitlines()), 110)
+
     def test_the_groups_add_up_to_the_whole(self):
         for by in ("bounce", "ray"):
             report = self.explained("--by", by, "--json").json
