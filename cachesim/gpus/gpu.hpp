@@ -25,6 +25,12 @@ enum class SliceHash {
     ipoly,  ///< 16, 32 or 64 slices; CacheGeometry::slice_bits
 };
 
+/// When a miss takes a line of the cache. Without time there is no difference.
+enum class Allocate {
+    on_miss,  ///< at once; the line cannot be evicted until its data are there
+    on_fill,  ///< when the data arrive; until then they wait in a miss-status holding register
+};
+
 /// A sectored set-associative cache in one or more slices. Any positive numbers will do: powers of two are not required
 /// unless a hash asks for them.
 struct CacheGeometry {
@@ -46,6 +52,7 @@ struct CacheGeometry {
     /// Bytes fetched from below on a miss: the sectors that lie in the same aligned piece of this size and are absent.
     /// 0: the sector alone.
     std::uint32_t fill_bytes = 0;
+    Allocate allocate = Allocate::on_miss;
 
     std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
 };

@@ -13,8 +13,8 @@ constexpr const char* root_keys[] = {"name",      "description", "sms",       "w
 constexpr const char* front_end_keys[] = {"load_bytes", "lanes_per_request_16", "lanes_per_request_8",
                                           "lanes_per_request_4"};
 constexpr const char* cache_keys[] = {
-    "sets", "ways",   "line_bytes", "sector_bytes",     "index",      "index_masks",     "policy",
-    "seed", "slices", "slice_hash", "interleave_bytes", "slice_bits", "slice_hash_from", "fill_bytes"};
+    "sets",   "ways",       "line_bytes",       "sector_bytes", "index",           "index_masks", "policy",  "seed",
+    "slices", "slice_hash", "interleave_bytes", "slice_bits",   "slice_hash_from", "fill_bytes",  "allocate"};
 constexpr const char* timing_keys[] = {"clock_mhz",
                                        "launch_cycles",
                                        "schedulers",
@@ -51,6 +51,7 @@ constexpr Choice<SetIndex> set_indices[] = {{"modulo", SetIndex::modulo},
                                             {"parity", SetIndex::parity}};
 constexpr Choice<SliceHash> slice_hashes[] = {
     {"modulo", SliceHash::modulo}, {"xor_fold", SliceHash::xor_fold}, {"ipoly", SliceHash::ipoly}};
+constexpr Choice<Allocate> allocations[] = {{"on_miss", Allocate::on_miss}, {"on_fill", Allocate::on_fill}};
 constexpr Choice<Scheduler> schedulers[] = {{"loose_round_robin", Scheduler::loose_round_robin},
                                             {"greedy_then_oldest", Scheduler::greedy_then_oldest}};
 constexpr Choice<L1Port> l1_ports[] = {{"tags", L1Port::tags}, {"banks", L1Port::banks}};
@@ -71,6 +72,7 @@ CacheGeometry read_cache(TomlReader::Section section) {
     cache.slice_bits = section.numbers_or_none<std::uint32_t>("slice_bits");
     cache.slice_hash_from = section.number_or("slice_hash_from", cache.slice_hash_from, true);
     cache.fill_bytes = section.number_or("fill_bytes", cache.sector_bytes);
+    cache.allocate = section.choice_or("allocate", allocations, cache.allocate);
     return cache;
 }
 

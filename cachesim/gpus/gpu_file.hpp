@@ -32,6 +32,7 @@
 //     slice_hash_from = 0                  # "ipoly": lowest of the address bits that are mixed in
 //     index_masks = []                     # "parity": one mask of address bits for each bit of the set
 //     fill_bytes = 32                      # what a miss fetches: the sector, or its aligned piece of this size
+//     allocate = "on_miss"                 # or "on_fill": when a miss takes its line; makes a difference in time only
 //
 // [timing] is for a timed replay, with a key for every field of Timing (cachesim/gpus/timing.hpp).
 #pragma once

@@ -46,16 +46,23 @@ public:
         }
     }
 
-    /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". Throws UsageError
-    /// if that is no TOML.
+    /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". VALUE is TOML, but
+    /// a word needs no quotes. Throws UsageError if it is neither.
     void change(const std::string& assignment) {
         toml::table given;
-        try {
-            given = toml::parse(assignment);
-        } catch (const toml::parse_error&) {
-        }
+        const auto parse = [&](const std::string& text) {
+            try {
+                given = toml::parse(text);
+            } catch (const toml::parse_error&) {
+            }
+        };
+        parse(assignment);
+        const auto equals = assignment.find('=');
+        if (given.empty() && equals != std::string::npos &&
+            assignment.find_first_of("\"'\n", equals) == std::string::npos)
+            parse(fmt::format("{}=\"{}\"", assignment.substr(0, equals), assignment.substr(equals + 1)));
         if (given.size() != 1)
-            throw UsageError(fmt::format("expected KEY=VALUE such as l1.ways=64 or l1.policy='fifo', found \"{}\"",
+            throw UsageError(fmt::format("expected KEY=VALUE such as l1.ways=64 or l1.policy=fifo, found \"{}\"",
                                          one_line(assignment)));
         const std::string key(given.begin()->first.str());
         const toml::node& value = given.begin()->second;
@@ -173,7 +180,8 @@ public:
 
 private:
     [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
-        throw Error(fmt::format("{}:{}: {}: {}", file_, line, key, message));
+        const std::string place = line == 0 ? " with --set" : fmt::format(":{}", line);  // 0: what change() gave
+        throw Error(fmt::format("{}{}: {}: {}", file_, place, key, message));
     }
 
     static std::size_t line_of(const toml::node& node) { return node.source().begin.line; }

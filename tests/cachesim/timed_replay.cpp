@@ -4,79 +4,13 @@
 #include <cmath>
 
 #include "oracle.hpp"
-#include "random_launch.hpp"
+#include "timed_cases.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
 using namespace raycache::cachesim::test;
 using traces::ObjectKind;
-
-namespace {
-
-/// One SM, one scheduler, no instructions between accesses; round numbers.
-Gpu timed_gpu() {
-    Gpu gpu;
-    gpu.name = "timed";
-    gpu.sms = 1;
-    gpu.warps_per_sm = gpu.warps_per_cta = 1;
-    gpu.levels[0].sets = 4;
-    gpu.levels[0].ways = 64;
-    gpu.levels[1].sets = 64;
-    gpu.levels[1].ways = 16;
-    gpu.levels[1].slices = 4;
-    Timing t;
-    t.clock_mhz = 1000;
-    t.schedulers = 1;
-    t.l1_latency = 30;
-    t.l2_latency = 200;
-    t.l2_far_latency = 200;
-    t.dram_latency = 500;
-    t.l1_mshrs = 256;
-    t.l1_mshr_merges = 8;
-    t.l2_mshrs = 192;
-    t.l2_mshr_merges = 4;
-    t.dram_channels = 4;
-    t.dram_gb_s = 256;  // 8 sectors a cycle
-    gpu.timing = t;
-    return gpu;
-}
-
-/// Elements of 16 bytes: one load each.
-const std::vector<traces::Region> pieces{region(ObjectKind::node, 0x200000, 16, 16, 1u << 24)};
-
-Launch launch_of(const std::vector<std::vector<std::vector<std::uint32_t>>>& warps) {
-    Launch launch{pieces, {}};
-    for (const auto& accesses : warps) {
-        auto warp = std::make_shared<traces::WarpTrace>();
-        warp->warp = static_cast<std::uint32_t>(launch.warps.size());
-        for (const auto& elements : accesses) {
-            traces::Record record;
-            record.mask = static_cast<std::uint32_t>((std::uint64_t{1} << elements.size()) - 1);
-            warp->records.push_back(record);
-            warp->elements.insert(warp->elements.end(), elements.begin(), elements.end());
-        }
-        launch.warps.push_back(std::move(warp));
-    }
-    return launch;
-}
-
-TimedStatistics timed(const Gpu& gpu, const Launch& launch, const Idealised& ideal = {}) {
-    TimedReplay replay(gpu, launch.regions, 0, ideal);
-    for (const auto& warp : launch.warps) replay.push(warp);
-    return replay.finish();
-}
-
-/// One lane reads these elements one after the other.
-std::vector<std::vector<std::uint32_t>> chase(const std::vector<std::uint32_t>& elements) {
-    std::vector<std::vector<std::uint32_t>> accesses;
-    for (const std::uint32_t e : elements) accesses.push_back({e});
-    return accesses;
-}
-
-constexpr std::uint32_t elements_per_line = 8;
-
-}  // namespace
 
 TEST_CASE("a pointer chase takes the latency of the level that answers, times its length") {
     std::vector<std::uint32_t> one_line(100, 0), lines, twice;

@@ -49,7 +49,9 @@ class Timed(ProgramTest):
         many = self.succeeds("replay", trace, "--gpu", "v100", "--json").json["rows"][0]
         self.assertGreater(few["totals"]["l2_sectors"], many["totals"]["l2_sectors"])
         for code, change, word in ((1, "l1.wys=2", "l1.wys"), (2, "l1.ways", "KEY=VALUE"), (1, "l1.ways=-1", "l1.ways"),
-                                   (2, "l9.ways=4", "l9"), (2, "l1.policy=lru", "KEY=VALUE")):
+                                   (2, "l9.ways=4", "l9"),
+                                   (1, "l1.policy=newest", "with --set: l1.policy: expected one of: fifo, lru"),
+                                   (2, "l1.policy='lru", "KEY=VALUE"), (1, "l1.allocate=never", "on_fill")):
             self.refuses(code, "replay", trace, "--gpu", "v100", "--set", change, mentions=[word])
 
     def test_options_that_exclude_each_other_are_refused(self):

@@ -34,11 +34,17 @@ MemorySide::MemorySide(const Gpu& gpu, const Idealised& ideal)
       dram_cost_(cycles_per_sector(timing_.dram_gb_s * 1e9 / (timing_.clock_mhz * 1e6) / timing_.dram_channels,
                                    geometry_.sector_bytes, ideal.infinite_bandwidth)),
       channel_(timing_.dram_channels),
-      merges_(geometry_.slices * geometry_.sets * geometry_.ways * sectors_per_line_),
       under_way_(geometry_.slices),
       to_slices_(gpu.sms, geometry_.slices, slice_cost_),
       to_sms_(geometry_.slices, gpu.sms, crossbar_cost_),
-      sent_(gpu.sms) {}
+      sent_(gpu.sms) {
+    std::size_t entries = geometry_.slices * geometry_.sets * geometry_.ways;
+    if (auto buffer = make_fill_buffer(geometry_, timing_.l2_mshrs)) {
+        entries += std::size_t{geometry_.slices} * buffer->lines();
+        fills_.assign(geometry_.slices, *buffer);
+    }
+    merges_.resize(entries * sectors_per_line_);
+}
 
 void MemorySide::request(const MissRequest& miss) {
     double& free = sent_[miss.sm];
@@ -65,45 +71,62 @@ Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_
         ++answers_.hits;
         return time;
     }
+    FillBuffer* const fills = fills_.empty() ? nullptr : &fills_[slice];
+    if (fills) fills->drain(time, tags_, map_);
     std::uint32_t entry = tags_.find(line);
+    const auto merge = [&](std::uint32_t number, Cycle arrival) {
+        ++answers_.merges;
+        // A register that merges no more holds up the slice until the data are there.
+        if (++merges_[number * sectors_per_line_ + sector] >= timing_.l2_mshr_merges)
+            to_slices_.block_output(slice, arrival);
+        return arrival;
+    };
     if (entry != SectorTags::none && tags_.present(entry, sector)) {
         tags_.use(entry);
         const Cycle arrival = tags_.arrival(entry, sector);
-        if (arrival <= time) {
-            ++answers_.hits;
-            return time;
-        }
-        ++answers_.merges;
-        // A register that merges no more holds up the slice until the data are there.
-        if (++merges_[entry * sectors_per_line_ + sector] >= timing_.l2_mshr_merges)
-            to_slices_.block_output(slice, arrival);
-        return arrival;
+        if (arrival > time) return merge(entry, arrival);
+        ++answers_.hits;
+        return time;
+    }
+    if (fills) {
+        const std::uint32_t filling = fills->find(line, sector);
+        if (filling != SectorTags::none) return merge(first_fill(slice) + filling, fills->arrival(filling, sector));
     }
     auto& under_way = under_way_[slice];
     while (!under_way.empty() && under_way.top() <= time) under_way.pop();
+    const auto wait = [&] {  // until a register is free
+        time = under_way.empty() ? time + 1 : std::max(time + 1, under_way.top());
+        if (!under_way.empty()) under_way.pop();
+        if (!fills) return;
+        fills->drain(time, tags_, map_);
+        entry = tags_.find(line);
+    };
     if (under_way.size() >= timing_.l2_mshrs) {
-        time = under_way.top();
-        under_way.pop();
+        wait();
         to_slices_.block_output(slice, time);
     }
-    if (entry == SectorTags::none) {
-        ++answers_.line_misses;
-        const std::uint64_t set = map_(line);
-        while ((entry = tags_.replace(set, line, time)) == SectorTags::none) {  // every line is on its way: wait
-            time = under_way.empty() ? time + 1 : std::max(time + 1, under_way.top());
-            if (!under_way.empty()) under_way.pop();
-        }
-    } else {
+    if (entry != SectorTags::none) {
         ++answers_.sector_misses;
         tags_.use(entry);
+    } else {
+        ++answers_.line_misses;
+        const std::uint64_t set = map_(line);
+        while (!fills && (entry = tags_.replace(set, line, time)) == SectorTags::none) wait();  // no line has arrived
     }
     const std::uint32_t first = sector / sectors_per_fill_ * sectors_per_fill_;
     Cycle arrival = 0;
     for (std::uint32_t s = first; s < first + sectors_per_fill_; ++s) {
-        if (tags_.present(entry, s)) continue;
+        if (entry != SectorTags::none && tags_.present(entry, s)) continue;
+        if (fills && fills->find(line, s) != SectorTags::none) continue;
         const Cycle here = read_dram(slice, time);
-        tags_.add(entry, s, here);
-        merges_[entry * sectors_per_line_ + s] = 1;
+        std::uint32_t holder = entry;
+        if (fills) {
+            while ((holder = fills->add(line, s, here, time)) == SectorTags::none) wait();
+            holder += first_fill(slice);
+        } else {
+            tags_.add(entry, s, here);
+        }
+        merges_[holder * sectors_per_line_ + s] = 1;
         under_way.push(here);
         if (s == sector) arrival = here;
     }

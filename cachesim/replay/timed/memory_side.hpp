@@ -14,6 +14,7 @@
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/timed/crossbar.hpp"
+#include "cachesim/replay/timed/fill_buffer.hpp"
 #include "cachesim/replay/timed/sector_tags.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
@@ -84,6 +85,11 @@ private:
     void serve(const Packet&, Cycle);
     Cycle look_up(std::uint64_t line, std::uint32_t sector, std::uint32_t slice, Cycle time);
     Cycle read_dram(std::uint32_t slice, Cycle time);
+    /// Number of the first entry of a slice's fill buffer.
+    std::uint32_t first_fill(std::uint32_t slice) const {
+        return static_cast<std::uint32_t>(geometry_.slices * geometry_.sets * geometry_.ways +
+                                          std::uint64_t{slice} * fills_[slice].lines());
+    }
 
     CacheGeometry geometry_;
     Timing timing_;
@@ -96,6 +102,8 @@ private:
     double crossbar_cost_, slice_cost_, dram_cost_;  ///< cycles per sector
     std::vector<double> channel_;                    ///< when each is free
     std::vector<std::uint16_t> merges_;              ///< of each sector of each entry
+    /// Allocate::on_fill: of each slice; their entries are numbered behind those of tags_.
+    std::vector<FillBuffer> fills_;
     /// Arrivals of the sectors on their way, of each slice: how many miss-status holding registers are taken.
     std::vector<std::priority_queue<Cycle, std::vector<Cycle>, std::greater<>>> under_way_;
     Crossbar<Packet> to_slices_;

@@ -50,6 +50,7 @@ public:
         return lines_[entry].present != 0 && lines_[entry].line == line;
     }
 
+    std::uint64_t line(std::uint32_t entry) const { return lines_[entry].line; }
     bool present(std::uint32_t entry, std::uint32_t sector) const { return lines_[entry].present >> sector & 1; }
     /// Whether a present sector's data are there. Most often the line alone can tell.
     bool arrived(std::uint32_t entry, std::uint32_t sector, Cycle now) const {
@@ -76,10 +77,15 @@ public:
             line.last_arrival = arrival;
             return;
         }
-        line.last_arrival = 0;
-        for (std::uint32_t present = line.present; present; present &= present - 1)
-            line.last_arrival = std::max(
-                line.last_arrival, arrival_[entry * sectors_ + static_cast<std::uint32_t>(std::countr_zero(present))]);
+        find_last_arrival(entry);
+    }
+
+    /// Takes out a sector that is present. An entry without sectors holds no line.
+    void remove(std::uint32_t entry, std::uint32_t sector) {
+        Line& line = lines_[entry];
+        line.present &= ~(1u << sector);
+        find_last_arrival(entry);
+        if (line.present == 0) unchain(entry);
     }
 
     /// Evicts a line of the set for this one, which is absent; its sectors are absent as yet. `none` if every line of
@@ -95,11 +101,7 @@ public:
         }
         const std::uint32_t victim = first + way;
         Line& entry = lines_[victim];
-        if (entry.present) {
-            std::uint32_t* link = &chains_[bucket(entry.line)];
-            while (*link != victim) link = &lines_[*link].next;
-            *link = entry.next;
-        }
+        if (entry.present) unchain(victim);
         make_newest(set, way);
         entry.line = line;
         entry.present = 0;
@@ -122,6 +124,20 @@ private:
 
     /// Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
     std::uint64_t bucket(std::uint64_t line) const { return (line * 0x9e3779b97f4a7c15ull) >> shift_; }
+
+    void unchain(std::uint32_t entry) {
+        std::uint32_t* link = &chains_[bucket(lines_[entry].line)];
+        while (*link != entry) link = &lines_[*link].next;
+        *link = lines_[entry].next;
+    }
+
+    void find_last_arrival(std::uint32_t entry) {
+        Line& line = lines_[entry];
+        line.last_arrival = 0;
+        for (std::uint32_t present = line.present; present; present &= present - 1)
+            line.last_arrival =
+                std::max(line.last_arrival, arrival(entry, static_cast<std::uint32_t>(std::countr_zero(present))));
+    }
 
     void make_newest(std::uint64_t set, std::uint16_t way) {
         std::uint16_t& newest = newest_[set];

@@ -37,7 +37,9 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
 TimedSm::L1::L1(const TimedRules& rules)
     : tags(rules.gpu.l1().slices * rules.gpu.l1().sets, rules.gpu.l1().ways, rules.sectors_per_line,
            rules.gpu.l1().policy == "fifo"),
-      merges(rules.gpu.l1().slices * rules.gpu.l1().sets * rules.gpu.l1().ways * rules.sectors_per_line),
+      fills(make_fill_buffer(rules.gpu.l1(), rules.timing.l1_mshrs)),
+      entries(static_cast<std::uint32_t>(rules.gpu.l1().slices * rules.gpu.l1().sets * rules.gpu.l1().ways)),
+      merges((entries + (fills ? fills->lines() : 0)) * std::size_t{rules.sectors_per_line}),
       waiters(merges.size(), SectorTags::none) {}
 
 TimedSm::TimedSm(const TimedRules& rules, std::uint16_t number)
@@ -180,7 +182,10 @@ void TimedSm::visit_done(std::uint32_t number) {
 void TimedSm::deliver(const MemorySide::Reply& reply) {
     L1& l1 = l1s_[reply.l1];
     const std::size_t place = std::size_t{reply.entry} * rules_.sectors_per_line + reply.sector;
-    l1.tags.set_arrival(reply.entry, reply.sector, reply.ready);
+    if (l1.fills)
+        l1.fills->set_arrival(reply.entry - l1.entries, reply.sector, reply.ready);
+    else
+        l1.tags.set_arrival(reply.entry, reply.sector, reply.ready);
     l1.arrivals.push(reply.ready);
     std::uint32_t waiter = l1.waiters[place];
     l1.waiters[place] = SectorTags::none;

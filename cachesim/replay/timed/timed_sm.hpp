@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <queue>
 #include <span>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/multiprocessor.hpp"
+#include "cachesim/replay/timed/fill_buffer.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
 #include "cachesim/replay/timed/sector_tags.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
@@ -106,6 +108,8 @@ private:
     struct L1 {
         explicit L1(const TimedRules&);
         SectorTags tags;
+        std::optional<FillBuffer> fills;     ///< Allocate::on_fill; its entries are numbered behind those of `tags`
+        std::uint32_t entries;               ///< of `tags`
         std::vector<std::uint16_t> merges;   ///< of each sector of each entry
         std::vector<std::uint32_t> waiters;  ///< likewise: first of waiting_, or none
         std::vector<Load> queue;             ///< loads in order of issue, from `head` on

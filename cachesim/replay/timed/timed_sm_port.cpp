@@ -17,10 +17,13 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, 
     }
     const std::uint64_t line = sector_number >> rules_.line_of_sector;
     const auto sector = static_cast<std::uint32_t>(sector_number & (rules_.sectors_per_line - 1));
+    if (l1.fills) l1.fills->drain(time, l1.tags, rules_.l1_map);
     if (!l1.tags.holds(entry, line)) entry = l1.tags.find(line);
     const bool line_there = entry != SectorTags::none;
-    std::size_t place = std::size_t{entry} * rules_.sectors_per_line + sector;
-    const auto wait_here = [&] {
+    const auto place_of = [&](std::uint32_t number_of_entry) {
+        return std::size_t{number_of_entry} * rules_.sectors_per_line + sector;
+    };
+    const auto wait_at = [&](std::size_t place) {
         std::uint32_t waiter = free_waiter_;
         if (waiter == SectorTags::none) {
             waiter = static_cast<std::uint32_t>(waiting_.size());
@@ -32,45 +35,56 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight_number, 
         l1.waiters[place] = waiter;
         ++flight.unresolved;
     };
+    const auto merge = [&](std::size_t place, Cycle arrival) {
+        if (l1.merges[place] >= rules_.timing.l1_mshr_merges) return false;
+        if (line_there) l1.tags.use(entry);
+        ++l1.merges[place];
+        ++answers.merges;
+        if (arrival == SectorTags::unknown)
+            wait_at(place);
+        else
+            flight.arrival = std::max(flight.arrival, arrival);
+        return true;
+    };
     if (line_there && l1.tags.present(entry, sector)) {
         if (l1.tags.arrived(entry, sector, time)) {
             l1.tags.use(entry);
             ++answers.hits;
             return true;
         }
-        const Cycle arrival = l1.tags.arrival(entry, sector);
-        if (l1.merges[place] >= rules_.timing.l1_mshr_merges) return false;
-        l1.tags.use(entry);
-        ++l1.merges[place];
-        ++answers.merges;
-        if (arrival == SectorTags::unknown)
-            wait_here();
-        else
-            flight.arrival = std::max(flight.arrival, arrival);
-        return true;
+        return merge(place_of(entry), l1.tags.arrival(entry, sector));
+    }
+    if (l1.fills) {
+        const std::uint32_t filling = l1.fills->find(line, sector);
+        if (filling != SectorTags::none) {
+            const bool merged = merge(place_of(l1.entries + filling), l1.fills->arrival(filling, sector));
+            if (!line_there) entry = 0;
+            return merged;
+        }
     }
     for (; !l1.arrivals.empty() && l1.arrivals.front() <= time; l1.arrivals.pop()) --l1.under_way;
     if (l1.under_way >= rules_.timing.l1_mshrs) {
         if (!line_there) entry = 0;
         return false;
     }
-    if (!line_there) {
-        entry = l1.tags.replace(rules_.l1_map(line), line, time);
-        if (entry == SectorTags::none) {
-            entry = 0;
-            return false;
-        }
-        place = std::size_t{entry} * rules_.sectors_per_line + sector;
-        ++answers.line_misses;
+    std::uint32_t holder;  // the entry that waits for the sector
+    if (l1.fills) {
+        holder = l1.fills->add(line, sector, SectorTags::unknown, time);
+        if (holder != SectorTags::none) holder += l1.entries;
     } else {
-        l1.tags.use(entry);
-        ++answers.sector_misses;
+        holder = line_there ? entry : l1.tags.replace(rules_.l1_map(line), line, time);
+        if (holder != SectorTags::none) l1.tags.add(holder, sector, SectorTags::unknown);
     }
-    l1.tags.add(entry, sector, SectorTags::unknown);
-    l1.merges[place] = 1;
+    if (line_there)
+        l1.tags.use(entry);
+    else
+        entry = l1.fills || holder == SectorTags::none ? 0 : holder;
+    if (holder == SectorTags::none) return false;
+    ++(line_there ? answers.sector_misses : answers.line_misses);
+    l1.merges[place_of(holder)] = 1;
     ++l1.under_way;
-    wait_here();
-    misses.push_back({time, line, entry, number_, static_cast<std::uint8_t>(sector), number});
+    wait_at(place_of(holder));
+    misses.push_back({time, line, holder, number_, static_cast<std::uint8_t>(sector), number});
     return true;
 }
 
