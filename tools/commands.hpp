@@ -17,5 +17,6 @@ void add_explain(CLI::App&);
 void add_export(CLI::App&);
 void add_import(CLI::App&);
 void add_list(CLI::App&);
+void add_samples(CLI::App&);
 
 }  // namespace raycache::tools
