@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Timed replays, --set, and the import of RTWARP01 traces, from outside."""
+import os
 import struct
+import subprocess
 
-from support import ProgramTest, main
+from support import RAYCACHE, SCENE, ProgramTest, main
 
 
 def rtwarp(records, magic=b"RTWARP01"):
@@ -31,6 +33,22 @@ class Timed(ProgramTest):
         one = self.succeeds("replay", trace, "--gpu", "v100", "--timed", "--json", "--threads", "1").text
         two = self.succeeds("replay", trace, "--gpu", "v100", "--timed", "--json", "--threads", "2").text
         self.assertEqual(one, two)
+
+    def test_peak_memory_stays_below_300_mib_however_long_the_trace(self):
+        peaks = {}
+        for samples in (1, 6):
+            trace = self.path(f"{samples}.rct")
+            self.succeeds("capture", *SCENE, "--resolution", "128x128", "--trace-samples", samples, "--spp", "64", "-o", trace)
+            for mode in ([], ["--timed"]):
+                command = [RAYCACHE, "replay", str(trace), "--gpu", "rtx-3070", "--threads", "1", *mode]
+                with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+                    status, usage = os.wait4(process.pid, 0)[1:]
+                    process.returncode = status
+                self.assertEqual(status, 0)
+                peaks[samples, *mode] = usage.ru_maxrss / 1024
+        self.assertLess(max(peaks.values()), 300, peaks)
+        self.assertLess(peaks[6, "--timed"], peaks[1, "--timed"] + 40, peaks)
+        self.assertLess(peaks[6,], peaks[1,] + 40, peaks)
 
     def test_every_gpu_preset_can_be_timed_but_a_cpu_says_what_it_lacks(self):
         trace = self.capture("trace.rct", "--bounces", "0")
