@@ -19,7 +19,7 @@ struct Options {
 
 void run(const Options& o) {
     const tracer::CaptureSettings settings = o.sampling.capture(o.scene, o.sequence, o.decorrelation, o.spp);
-    const std::string adjusted = tracer::make_decorrelation(o.decorrelation, settings.strategy.parameters)->warning();
+    const std::string adjusted = settings_warning(settings);
     if (!adjusted.empty()) warn(adjusted);
     const auto limit = o.threads.apply();
     const auto scene = o.scene.prepare();

@@ -30,7 +30,7 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
         for (const std::uint64_t spp : o.spp)
             for (const std::string& strategy : o.strategies) {
                 settings.push_back(o.sampling.capture(o.scene, sequence, strategy, spp));
-                warnings.insert(tracer::make_decorrelation(strategy, settings.back().strategy.parameters)->warning());
+                warnings.insert(settings_warning(settings.back()));
             }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);

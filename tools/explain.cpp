@@ -53,7 +53,7 @@ void explain_scene(const Options& o) {
     std::set<std::string> warnings;
     for (const std::string& strategy : o.strategies) {
         settings.push_back(o.sampling.capture(o.scene, o.sequence, strategy, o.spp));
-        warnings.insert(tracer::make_decorrelation(strategy, settings.back().strategy.parameters)->warning());
+        warnings.insert(settings_warning(settings.back()));
     }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);

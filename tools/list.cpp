@@ -41,7 +41,8 @@ std::vector<Topic> all_topics() {
              {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
             {"thread-maps",
              {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
-              {"samples", "a warp = one pixel, 32 consecutive sample indices"}}},
+              {"samples", "a warp = one pixel, 32 consecutive sample indices"},
+              {"classes", "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}}},
             {"scenes", entries_of(tracer::builtin_scenes())}};
 }
 

@@ -30,6 +30,15 @@ tracer::Vec3 parse_vector(const std::string& text, const char* option) {
     return v;
 }
 
+template <class Number>
+Number parse_number(const std::string& text, const char* option, const char* expected) {
+    Number value{};
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || stop != text.data() + text.size())
+        throw UsageError(fmt::format("{} '{}'; expected {}", option, text, expected));
+    return value;
+}
+
 tracer::SceneRequest::Sky parse_sky(const std::string& text) {
     if (text == "auto") return tracer::SceneRequest::Sky::automatic;
     if (text == "on") return tracer::SceneRequest::Sky::on;
@@ -52,6 +61,10 @@ void save_text(const std::string& path, const std::string& text) {
 }
 
 }  // namespace
+
+std::string settings_warning(const tracer::CaptureSettings& settings) {
+    return tracer::SamplingStrategy(settings.strategy, tracer::path_dimensions(settings.paths.bounces)).warning();
+}
 
 Resolution parse_resolution(const std::string& text) {
     Resolution r{};
@@ -116,9 +129,17 @@ void SamplingOptions::add_picture(CLI::App& app) {
 }
 
 void SamplingOptions::add_strategy(CLI::App& app) {
-    app.add_option("--k", k, "K of micro-jitter's mu = min(1, K * N^(-1/s))")->capture_default_str();
-    app.add_option("--s", s, "s of the same formula: dimensions sampled jointly")->capture_default_str();
-    app.add_option("--mu", mu, "mu itself, 0 to 1, or 'cycles': Blender's one-sided 4/sqrt(N); overrides --k and --s");
+    app.add_option("--k", k, "K of micro-jitter's mu = min(1, K * N^(-1/s)), or 'discrepancy': (N * D*_N)^(1/s)")
+        ->capture_default_str();
+    app.add_option("--s", s, "s of the same formula: dimensions sampled jointly, or 'full': all of a path")
+        ->capture_default_str();
+    app.add_option(
+        "--mu", mu,
+        "mu itself, 0 to 1, of micro-jitter and scrambling-distance; overrides --k and --s. With micro-jitter "
+        "also 'cycles': Blender's one-sided 4/sqrt(N)");
+    app.add_option("--interleave", interleave,
+                   "M of the M x M pixel classes of interleaved, net-micro-jitter-fast and the thread map classes")
+        ->capture_default_str();
     app.add_option("--seed", seed, "seed of jitter, random numbers and the choice of sample indices")
         ->capture_default_str();
 }
@@ -127,9 +148,11 @@ void SamplingOptions::add_launches(CLI::App& app) {
     app.add_option("--trace-samples", trace_samples,
                    "how many of the N sample indices are traced: a seeded random subset, the same for every strategy")
         ->capture_default_str();
-    app.add_option("--thread-map", thread_map,
-                   "tile: a warp = 8x4 pixels, one sample index; samples: a warp = one pixel, 32 sample indices")
-        ->capture_default_str();
+    app.add_option(
+        "--thread-map", thread_map,
+        "tile: a warp = 8x4 pixels, one sample index; samples: a warp = one pixel, 32 sample indices; classes: "
+        "tiles of pixels of one class (--interleave). Default: classes for strategies with pixel classes, "
+        "else tile");
 }
 
 tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, const std::string& decorrelation,
@@ -140,16 +163,16 @@ tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, 
     tracer::DecorrelationSettings& p = settings.parameters;
     p.spp = spp;
     p.seed = seed;
-    p.k = k;
-    p.s = s;
+    p.interleave = interleave;
+    p.width = parse_resolution(resolution).width;
+    p.k_from_discrepancy = k == "discrepancy";
+    if (!p.k_from_discrepancy) p.k = parse_number<double>(k, "--k", "a number such as 2.5, or 'discrepancy'");
+    p.full_s = s == "full";
+    if (!p.full_s) p.s = parse_number<unsigned>(s, "--s", "a whole number such as 2, or 'full'");
     if (mu == "cycles") {
         p.cycles_mu = true;
     } else if (!mu.empty()) {
-        double value = 0;
-        const auto [stop, error] = std::from_chars(mu.data(), mu.data() + mu.size(), value);
-        if (error != std::errc{} || stop != mu.data() + mu.size())
-            throw UsageError(fmt::format("--mu '{}'; expected a number from 0 to 1, or 'cycles'", mu));
-        p.mu = value;
+        p.mu = parse_number<double>(mu, "--mu", "a number from 0 to 1, or 'cycles'");
     }
     return settings;
 }
@@ -164,13 +187,15 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
     settings.paths.russian_roulette = russian_roulette;
     settings.strategy = strategy(sequence, decorrelation, spp);
     settings.trace_samples = trace_samples;
-    settings.thread_map = tracer::thread_map_from(thread_map);
+    const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
+    settings.thread_map = tracer::thread_map_from(thread_map.empty() ? own_map : thread_map);
     settings.program = program_name();
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
-        "--thread-map {} --k {} --s {}{} --seed {}",
+        "--thread-map {} --k {} --s {}{}{} --seed {}",
         scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces,
-        russian_roulette ? " --russian-roulette" : "", thread_map, k, s, mu.empty() ? "" : " --mu " + mu, seed);
+        russian_roulette ? " --russian-roulette" : "", tracer::to_string(settings.thread_map), k, s,
+        mu.empty() ? "" : " --mu " + mu, interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed);
     return settings;
 }
 

@@ -31,15 +31,15 @@ struct SceneOptions {
 
 /// Paths and samples of one strategy, except its name and N.
 struct SamplingOptions {
-    std::string resolution = "512x512", thread_map = "tile", mu;
+    std::string resolution = "512x512", mu, k = "2.5", s = "2";
+    std::string thread_map;  ///< empty: the strategy's own
     std::uint32_t bounces = 3;
     bool russian_roulette = false;
-    double k = 2.5;
-    unsigned s = 2;
+    unsigned interleave = 8;
     std::uint64_t seed = 1, trace_samples = 8;
 
     void add_picture(CLI::App&);   ///< --resolution --bounces --russian-roulette
-    void add_strategy(CLI::App&);  ///< --k --s --mu --seed
+    void add_strategy(CLI::App&);  ///< --k --s --mu --interleave --seed
     void add_launches(CLI::App&);  ///< --trace-samples --thread-map
 
     tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation,
@@ -72,6 +72,9 @@ struct ThreadOptions {
     void add(CLI::App&);
     std::shared_ptr<void> apply() const;
 };
+
+/// What the strategy has to say about its settings, such as "mu 1.58 clamped to 1 …"; empty if nothing.
+std::string settings_warning(const tracer::CaptureSettings&);
 
 struct Resolution {
     std::uint32_t width, height;

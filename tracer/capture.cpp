@@ -20,7 +20,7 @@ constexpr std::uint32_t texel_bytes = 4;
 /// Warps of a file block: 8 CTAs.
 constexpr std::uint32_t block_warps = 64;
 
-const CaptureSettings& checked(const CaptureSettings& settings) {
+CaptureSettings checked(CaptureSettings settings) {
     const auto check_size = [](std::uint32_t pixels, const char* what) {
         if (pixels == 0 || pixels > max_resolution)
             throw UsageError(fmt::format("picture {} of {} pixels; expected 1 to {}", what, pixels, max_resolution));
@@ -29,6 +29,7 @@ const CaptureSettings& checked(const CaptureSettings& settings) {
     check_size(settings.height, "height");
     if (settings.paths.bounces > max_bounces)
         throw UsageError(fmt::format("{} bounces; expected 0 to {}", settings.paths.bounces, max_bounces));
+    settings.strategy.parameters.width = settings.width;
     return settings;
 }
 
@@ -92,9 +93,10 @@ public:
 Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     : scene_(scene),
       settings_(checked(settings)),
-      strategy_(settings.strategy, path_dimensions(settings.paths.bounces)),
+      strategy_(settings_.strategy, path_dimensions(settings.paths.bounces)),
       camera_(scene.camera(), settings.width, settings.height),
-      grid_(settings.thread_map, settings.width, settings.height, settings.strategy.parameters.spp) {
+      grid_(settings.thread_map, settings.width, settings.height, settings.strategy.parameters.spp,
+            settings.strategy.parameters.interleave) {
     header_.provenance = make_provenance(scene, settings_, strategy_);
     header_.regions = make_regions(scene);
     header_.launches = choose_launches(settings_, grid_.samples_per_launch());

@@ -29,7 +29,9 @@ struct Worker {
 
 Image render(const PreparedScene& scene, const RenderSettings& settings,
              const std::function<void(std::uint64_t paths)>& progress) {
-    const SamplingStrategy strategy(settings.strategy, path_dimensions(settings.paths.bounces));
+    StrategySettings of_picture = settings.strategy;
+    of_picture.parameters.width = settings.width;
+    const SamplingStrategy strategy(of_picture, path_dimensions(settings.paths.bounces));
     const CameraRays camera(scene.camera(), settings.width, settings.height);
     const std::uint64_t spp = settings.strategy.parameters.spp;
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "tracer/sampling/measures/star_discrepancy.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -36,6 +38,11 @@ void check_settings(const DecorrelationSettings& settings) {
         throw UsageError(
             "sampling: the dimension s of mu = K * N^(-1/s) must be 1 or more, found 0: give s = 2, the default");
     }
+    if (settings.interleave == 0 || settings.interleave > max_interleave) {
+        throw UsageError(fmt::format(
+            "sampling: the M of M x M pixel classes must be 1 to {}, found {}: give --interleave 8, the default",
+            max_interleave, settings.interleave));
+    }
     if (settings.mu) {
         check_nonnegative("mu", *settings.mu, "0.1");
         if (settings.cycles_mu) {
@@ -58,7 +65,49 @@ double requested_mu(const DecorrelationSettings& settings) {
 
 double effective_mu(const DecorrelationSettings& settings) { return std::min(1.0, requested_mu(settings)); }
 
-std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings) {
+DecorrelationSettings resolve_k_and_s(const DecorrelationSettings& settings, const Sequence& sequence) {
+    DecorrelationSettings resolved = settings;
+    if (settings.full_s) {
+        if (settings.dimensions == 0)
+            throw UsageError(
+                "sampling: s = full needs the number of dimensions of a path, found none: give s as a number");
+        resolved.s = settings.dimensions;
+    }
+    if (settings.k_from_discrepancy) {
+        if (settings.spp > max_star_discrepancy_points) {
+            throw UsageError(fmt::format(
+                "sampling: K from the star discrepancy is computed exactly, for N up to {}, found N = {}: give K as a "
+                "number such as 2.5",
+                max_star_discrepancy_points, settings.spp));
+        }
+        std::vector<FixedPoint2> points;
+        for (std::uint32_t i = 0; i < settings.spp; ++i)
+            points.push_back({sequence.sample(i, 0), sequence.sample(i, 1)});
+        resolved.k = std::pow(static_cast<double>(settings.spp) * star_discrepancy(points), 1.0 / resolved.s);
+    }
+    return resolved;
+}
+
+void require_net(const std::string& decorrelation, const Sequence& sequence, unsigned s) {
+    const auto fits = [s](const Sequence& q) { return q.net_dimensions() != 0 && q.net_dimensions() % s == 0; };
+    if (fits(sequence)) return;
+    std::string names;
+    for (const auto& entry : sequences())
+        if (fits(*make_sequence(entry.name))) names += (names.empty() ? "" : ", ") + entry.name;
+    throw UsageError(fmt::format(
+        "sampling: {} moves points inside the cells of a net in base 2 in {} dimension{} jointly, found sequence '{}', "
+        "which is none: choose one of {}",
+        decorrelation, s, s == 1 ? "" : "s", sequence.name(), names));
+}
+
+unsigned require_power_of_two(const std::string& decorrelation, const DecorrelationSettings& settings) {
+    if (std::has_single_bit(settings.spp)) return static_cast<unsigned>(std::countr_zero(settings.spp));
+    throw UsageError(
+        fmt::format("sampling: {} needs a whole net, so N must be a power of two, found {}: give N = {} or {}",
+                    decorrelation, settings.spp, std::bit_floor(settings.spp), std::bit_ceil(settings.spp)));
+}
+
+const DecorrelationEntry& find_decorrelation(const std::string& name) {
     const auto& all = decorrelations();
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
     if (found == all.end()) {
@@ -67,8 +116,18 @@ std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const
         throw UsageError(
             fmt::format("sampling: unknown decorrelation '{}', expected one of {}: choose one of them", name, names));
     }
+    return *found;
+}
+
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings,
+                                                  const Sequence& sequence) {
+    const DecorrelationEntry& entry = find_decorrelation(name);
     check_settings(settings);
-    return found->make(settings);
+    return entry.make(settings, sequence);
+}
+
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings) {
+    return make_decorrelation(name, settings, *make_sequence("sobol"));
 }
 
 }  // namespace raycache::tracer

@@ -9,17 +9,28 @@
 #include <string>
 #include <vector>
 
+#include "tracer/sampling/sequence.hpp"
+
 namespace raycache::tracer {
 
 /// What the user may set. Fields that a decorrelation does not use are ignored by it.
 struct DecorrelationSettings {
     std::uint64_t spp = 1;  ///< N, the size of the sample set, 1 … 2^32
     std::uint64_t seed = 0;
-    double k = 2.5;            ///< K of mu = min(1, K * N^(-1/s))
-    unsigned s = 2;            ///< dimension in the same formula
-    std::optional<double> mu;  ///< given directly, 0 … 1; overrides K and s
-    bool cycles_mu = false;    ///< `--mu cycles`: mu = min(1, 4/sqrt(N)), one-sided offset in [0, mu)
+    double k = 2.5;                   ///< K of mu = min(1, K * N^(-1/s))
+    bool k_from_discrepancy = false;  ///< K = (N * D*_N)^(1/s) instead, D*_N of dimensions 0 and 1 of the sequence
+    unsigned s = 2;                   ///< dimension in the same formula
+    bool full_s = false;              ///< s = `dimensions` instead
+    std::optional<double> mu;         ///< given directly, 0 … 1; overrides K and s
+    bool cycles_mu = false;           ///< `--mu cycles`: mu = min(1, 4/sqrt(N)), one-sided offset in [0, mu)
+    unsigned interleave = 8;          ///< m of m x m pixel classes, 1 … max_interleave
+
+    // What the user does not type: SamplingStrategy and its callers fill these in.
+    std::uint32_t dimensions = 0;  ///< of a path
+    std::uint32_t width = 0;       ///< of the picture in pixels; 0: unknown, refused by what depends on a pixel's place
 };
+
+inline constexpr unsigned max_interleave = 256;
 
 class Decorrelation {
 public:
@@ -35,26 +46,43 @@ public:
 
 struct DecorrelationEntry {
     std::string name, description;
-    std::unique_ptr<Decorrelation> (*make)(const DecorrelationSettings&);
+    /// For that sequence, which need not outlive the call. Throws UsageError where the two together are not defined.
+    std::unique_ptr<Decorrelation> (*make)(const DecorrelationSettings&, const Sequence&);
+    bool has_classes = false;  ///< pixels of one class (px mod m, py mod m) share what others do not
 };
 const std::vector<DecorrelationEntry>& decorrelations();
 
 /// Throws UsageError unless N is 1 … 2^32.
 void check_spp(std::uint64_t spp);
 
-/// Throws UsageError for N = 0 or above 2^32, K or mu negative or not finite, s = 0, and mu given both as a number and
-/// as cycles_mu: for every decorrelation, even one that ignores the field. mu above 1 is not an error.
+/// Throws UsageError for N = 0 or above 2^32, K or mu negative or not finite, s = 0, mu given both as a number and as
+/// cycles_mu, and an `interleave` out of range: for every decorrelation, even one that ignores the field. mu above 1 is
+/// not an error.
 void check_settings(const DecorrelationSettings&);
 
 /// mu as the settings ask for it, before the clamp: `mu` if given, else 4/sqrt(N) for cycles_mu, else K * N^(-1/s)
-/// (eq. 2 of the paper). Precondition: check_settings() passes.
+/// (eq. 2 of the paper). Precondition: check_settings() passes; K and s are numbers (resolve_k_and_s).
 double requested_mu(const DecorrelationSettings&);
 
 /// min(1, requested_mu): above 1 the wrapped jitter would cover part of the unit interval twice.
 double effective_mu(const DecorrelationSettings&);
 
+/// The settings with `full_s` and `k_from_discrepancy` worked out into s and k. Throws UsageError where the path's
+/// dimensions are not known, or N is too large for the exact discrepancy.
+DecorrelationSettings resolve_k_and_s(const DecorrelationSettings&, const Sequence&);
+
+/// Throws UsageError unless every aligned group of s dimensions of the sequence is a net in base 2.
+void require_net(const std::string& decorrelation, const Sequence&, unsigned s);
+/// log2(N). Throws UsageError unless N is a power of two.
+unsigned require_power_of_two(const std::string& decorrelation, const DecorrelationSettings&);
+
 /// Throws UsageError for an unknown name (listing the valid ones) and as check_settings() does. mu above 1 is clamped
-/// to 1; Decorrelation::warning() says so.
+/// to 1; Decorrelation::warning() says so. Without a sequence: for the default one, sobol.
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings&,
+                                                  const Sequence&);
 std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings&);
+
+/// The entry of that name. Throws UsageError that lists the valid names.
+const DecorrelationEntry& find_decorrelation(const std::string& name);
 
 }  // namespace raycache::tracer

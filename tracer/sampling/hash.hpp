@@ -34,6 +34,14 @@ enum class HashPurpose : std::uint32_t {
     pixel_offset = 1,    ///< xi_{p,d}: shared by cranley-patterson and micro-jitter
     independent = 2,     ///< the random decorrelation
     sample_indices = 3,  ///< choose_sample_indices
+    pixel_scramble = 4,  ///< per pixel: owen, net-micro-jitter
+    class_offset = 5,    ///< per pixel class: interleaved
+    class_scramble = 6,  ///< per pixel class: net-micro-jitter-fast
+    set_shuffle = 7,     ///< order of the points in one set of a padded sequence
+    point_scramble = 8,  ///< scrambling inside a sequence
+    point_numbers = 9,   ///< the random sequence; the free digits of pmj02
+    mask_shift = 10,     ///< blue-noise: where the mask lies in each dimension
+    mask_detail = 11,    ///< blue-noise: the digits below a mask's rank, and the mask's own first pattern
 };
 
 /// A family of 2^96 random 32-bit words, picked by all 64 bits of a seed and by the purpose.

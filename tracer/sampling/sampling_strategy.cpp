@@ -40,14 +40,21 @@ private:
 SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32_t dimensions)
     : settings_(settings),
       dimensions_(dimensions),
-      sequence_(make_sequence(settings.sequence)),
-      decorrelation_(make_decorrelation(settings.decorrelation, settings.parameters)) {
+      sequence_(make_sequence(settings.sequence, settings.parameters.seed)) {
+    check_settings(settings.parameters);
     if (dimensions > sequence_->dimensions()) {
         throw UsageError(fmt::format(
             "sampling: sequence '{}' must have a dimension for every random number of a path, expected at most {}, "
             "found {}: trace fewer bounces or choose another sequence",
             settings.sequence, sequence_->dimensions(), dimensions));
     }
+    if (settings.parameters.spp > sequence_->points()) {
+        throw UsageError(
+            fmt::format("sampling: sequence '{}' has {} points, found N = {}: lower N or choose another sequence",
+                        settings.sequence, sequence_->points(), settings.parameters.spp));
+    }
+    settings_.parameters.dimensions = dimensions;
+    decorrelation_ = make_decorrelation(settings.decorrelation, settings_.parameters, *sequence_);
 }
 
 std::vector<std::uint32_t> SamplingStrategy::base_point(std::uint64_t index) const {

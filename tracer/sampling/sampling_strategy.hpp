@@ -23,7 +23,7 @@ struct StrategySettings {
 class SamplingStrategy {
 public:
     /// Fixes the strategy for paths of at most `dimensions` dimensions. Throws UsageError as its parts do, and where
-    /// the sequence has too few dimensions.
+    /// the sequence has too few dimensions or points. Strategies that depend on a pixel's place need parameters.width.
     SamplingStrategy(const StrategySettings&, std::uint32_t dimensions);
 
     /// The base point x_i of one sample index, all dimensions: compute it once per launch, not once per pixel.

@@ -16,15 +16,30 @@ public:
     /// SamplingStrategy).
     virtual std::uint32_t sample(std::uint32_t index, std::uint32_t dimension) const = 0;
     virtual std::uint32_t dimensions() const = 0;
+    /// How many points there are: indices 0 … points()-1 are valid.
+    virtual std::uint64_t points() const { return std::uint64_t{1} << 32; }
+
+    /// s where every aligned group of s dimensions is a digital net in base 2 of its own, for every N = 2^m; 0 where
+    /// dimensions are no nets in base 2.
+    virtual std::uint32_t net_dimensions() const { return 0; }
+    /// The largest k such that the first 2^m points fall equally often into each of the 2^(k s) cells of side 2^-k of
+    /// the dimensions first … first+s-1. Precondition: net_dimensions() is a multiple of s, first is one too, m <= 32.
+    virtual unsigned equal_cell_bits(std::uint32_t /*first*/, unsigned /*s*/, unsigned /*m*/) const { return 0; }
+
+    const std::string& name() const { return name_; }
+
+private:
+    friend std::unique_ptr<Sequence> make_sequence(const std::string& name, std::uint64_t seed);
+    std::string name_;
 };
 
 struct SequenceEntry {
     std::string name, description;
-    std::unique_ptr<Sequence> (*make)();
+    std::unique_ptr<Sequence> (*make)(std::uint64_t seed);  ///< plain sequences ignore the seed
 };
 const std::vector<SequenceEntry>& sequences();
 
 /// Throws UsageError that lists the valid names.
-std::unique_ptr<Sequence> make_sequence(const std::string& name);
+std::unique_ptr<Sequence> make_sequence(const std::string& name, std::uint64_t seed = 0);
 
 }  // namespace raycache::tracer

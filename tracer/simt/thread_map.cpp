@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -15,30 +17,54 @@ constexpr std::uint32_t tiles_per_square = pixels_per_square / traces::warp_lane
 }  // namespace
 
 ThreadMap thread_map_from(const std::string& name) {
-    if (name == "tile") return ThreadMap::tile;
-    if (name == "samples") return ThreadMap::samples;
-    throw UsageError(fmt::format("unknown thread map '{}'; expected one of: tile, samples", name));
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::classes})
+        if (name == to_string(map)) return map;
+    throw UsageError(fmt::format("unknown thread map '{}'; expected one of: tile, samples, classes", name));
 }
 
-const char* to_string(ThreadMap map) { return map == ThreadMap::tile ? "tile" : "samples"; }
+const char* to_string(ThreadMap map) {
+    if (map == ThreadMap::tile) return "tile";
+    return map == ThreadMap::samples ? "samples" : "classes";
+}
 
-LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height, std::uint64_t spp)
-    : map_(map), width_(width), height_(height), squares_across_((width + square - 1) / square), spp_(spp) {
-    const std::uint32_t squares = squares_across_ * ((height + square - 1) / square);
-    warps_ = squares * (map == ThreadMap::tile ? tiles_per_square : pixels_per_square);
+LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height, std::uint64_t spp,
+                       std::uint32_t interleave)
+    : map_(map),
+      width_(width),
+      height_(height),
+      interleave_(map == ThreadMap::classes ? interleave : 1),
+      squares_across_(0),
+      warps_per_class_(0),
+      warps_(0),
+      spp_(spp) {
+    if (interleave_ == 0 || (interleave_ > 1 && interleave_ > std::min(width, height)))
+        throw UsageError(fmt::format(
+            "thread map classes with {0}x{0} classes of pixels for a picture of {1}x{2}; expected 1 to {3}, "
+            "the shorter side (--interleave)",
+            interleave_, width, height, std::min(width, height)));
+    const std::uint32_t span = square * interleave_;
+    squares_across_ = (width + span - 1) / span;
+    const std::uint32_t squares = squares_across_ * ((height + span - 1) / span);
+    warps_per_class_ = squares * (map == ThreadMap::samples ? pixels_per_square : tiles_per_square);
+    warps_ = warps_per_class_ * interleave_ * interleave_;
 }
 
 WarpJobs LaunchGrid::jobs(std::uint32_t warp, std::uint32_t first_sample) const {
-    const std::uint32_t first = map_ == ThreadMap::tile ? warp * traces::warp_lanes : warp;  // pixel in dispatch order
+    const std::uint32_t pass = warp / warps_per_class_;  // which class
+    warp %= warps_per_class_;
+    const bool one_pixel = map_ == ThreadMap::samples;
+    const std::uint32_t first = one_pixel ? warp : warp * traces::warp_lanes;  // pixel in dispatch order
     WarpJobs out;
     for (std::uint32_t lane = 0; lane < traces::warp_lanes; ++lane) {
-        const std::uint32_t p = map_ == ThreadMap::tile ? first + lane : first;
+        const std::uint32_t p = one_pixel ? first : first + lane;
         const std::uint32_t in_square = p % pixels_per_square, in_tile = in_square % traces::warp_lanes;
         const std::uint32_t tile = in_square / traces::warp_lanes, corner = p / pixels_per_square;
         LaneJob& job = out.lane[lane];
         job.x = corner % squares_across_ * square + tile % tiles_across * tile_width + in_tile % tile_width;
         job.y = corner / squares_across_ * square + tile / tiles_across * tile_height + in_tile / tile_width;
-        job.sample = first_sample + (map_ == ThreadMap::tile ? 0 : lane);
+        job.x = job.x * interleave_ + pass % interleave_;
+        job.y = job.y * interleave_ + pass / interleave_;
+        job.sample = first_sample + (one_pixel ? lane : 0);
         if (job.x < width_ && job.y < height_ && job.sample < spp_) out.mask |= 1U << lane;
     }
     return out;

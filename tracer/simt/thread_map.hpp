@@ -1,9 +1,14 @@
 // Which (pixel, sample) a lane gets.
 //
-// Both maps walk the picture in squares of 16x16 pixels, row by row, and each square in tiles of 8x4 pixels, so that
+// All maps walk the picture in squares of 16x16 pixels, row by row, and each square in tiles of 8x4 pixels, so that
 // neighbours in dispatch order are neighbours in the picture.
 //   tile     a warp = the 32 pixels of one tile, one sample index. A launch is one sample index of every pixel.
 //   samples  a warp = one pixel, 32 consecutive sample indices. A launch is 32 sample indices of every pixel.
+//   classes  pixels fall into m x m classes (x mod m, y mod m). The pixels of a class, a picture of its own, are walked
+//   as
+//            `tile` walks the whole; class (0,0) first, then (1,0), … so that each is a coherent pass, one behind the
+//            other in the launch. A launch is one sample index of every pixel. m need not divide the picture's size:
+//            classes towards the right and the bottom then have a column or row less, and a few lanes or warps idle.
 #pragma once
 
 #include <array>
@@ -15,7 +20,7 @@
 
 namespace raycache::tracer {
 
-enum class ThreadMap { tile, samples };
+enum class ThreadMap { tile, samples, classes };
 
 /// Throws UsageError that lists the valid names.
 ThreadMap thread_map_from(const std::string& name);
@@ -34,15 +39,19 @@ struct WarpJobs {
 
 class LaunchGrid {
 public:
-    LaunchGrid(ThreadMap, std::uint32_t width, std::uint32_t height, std::uint64_t spp);
+    /// `interleave` is the m of `classes`, ignored by the other maps. Throws UsageError for `classes` unless m is at
+    /// least 1 and at most the picture's shorter side.
+    LaunchGrid(ThreadMap, std::uint32_t width, std::uint32_t height, std::uint64_t spp, std::uint32_t interleave = 1);
 
     std::uint32_t warps() const { return warps_; }  ///< per launch; some may lie outside the picture and stay empty
     WarpJobs jobs(std::uint32_t warp, std::uint32_t first_sample) const;
-    std::uint32_t samples_per_launch() const { return map_ == ThreadMap::tile ? 1 : traces::warp_lanes; }
+    std::uint32_t samples_per_launch() const { return map_ == ThreadMap::samples ? traces::warp_lanes : 1; }
 
 private:
     ThreadMap map_;
-    std::uint32_t width_, height_, squares_across_, warps_;
+    std::uint32_t width_, height_;
+    std::uint32_t interleave_;  ///< m of `classes`, else 1: one class
+    std::uint32_t squares_across_, warps_per_class_, warps_;
     std::uint64_t spp_;
 };
 

@@ -14,9 +14,10 @@ public:
 }  // namespace
 
 DecorrelationEntry coherent_entry() {
-    return {
-        "coherent", "the same points for every pixel",
-        [](const DecorrelationSettings&) -> std::unique_ptr<Decorrelation> { return std::make_unique<Coherent>(); }};
+    return {"coherent", "the same points for every pixel",
+            [](const DecorrelationSettings&, const Sequence&) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<Coherent>();
+            }};
 }
 
 }  // namespace raycache::tracer

@@ -25,7 +25,7 @@ private:
 
 DecorrelationEntry cranley_patterson_entry() {
     return {"cranley-patterson", "a random offset in [0, 1) per pixel and dimension, modulo 1",
-            [](const DecorrelationSettings& settings) -> std::unique_ptr<Decorrelation> {
+            [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<CranleyPatterson>(settings.seed);
             }};
 }

@@ -24,7 +24,7 @@ private:
 
 DecorrelationEntry random_entry() {
     return {"random", "an independent random number per pixel, sample and dimension; ignores the sequence",
-            [](const DecorrelationSettings& settings) -> std::unique_ptr<Decorrelation> {
+            [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<Random>(settings.seed);
             }};
 }

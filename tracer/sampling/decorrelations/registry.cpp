@@ -6,6 +6,13 @@
     X(coherent)                    \
     X(cranley_patterson)           \
     X(micro_jitter)                \
+    X(scrambling_distance)         \
+    X(uniform_jitter)              \
+    X(interleaved)                 \
+    X(owen)                        \
+    X(blue_noise)                  \
+    X(net_micro_jitter)            \
+    X(net_micro_jitter_fast)       \
     X(random)
 
 namespace raycache::tracer {

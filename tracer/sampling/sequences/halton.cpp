@@ -5,6 +5,7 @@
 // Exact: with k digits, the digits of i reversed are an integer r < base^k, and the result is floor(r * 2^32 / base^k).
 // High dimensions are poor for few points: the first `base` points are i / base, a plain ramp.
 #include "tracer/sampling/sequence.hpp"
+#include "tracer/sampling/sequences/primes.hpp"
 
 namespace raycache::tracer {
 
@@ -13,23 +14,6 @@ namespace {
 constexpr std::uint32_t table_dimensions = 1024;
 
 __extension__ using Wide = unsigned __int128;  // r * 2^32 needs up to 77 bits
-
-std::vector<std::uint32_t> first_primes(std::size_t count) {
-    std::vector<std::uint32_t> primes;
-    primes.reserve(count);
-    for (std::uint32_t candidate = 2; primes.size() < count; ++candidate) {
-        bool is_prime = true;
-        for (const std::uint32_t p : primes) {
-            if (p * p > candidate) break;
-            if (candidate % p == 0) {
-                is_prime = false;
-                break;
-            }
-        }
-        if (is_prime) primes.push_back(candidate);
-    }
-    return primes;
-}
 
 class Halton final : public Sequence {
 public:
@@ -56,7 +40,7 @@ private:
 
 SequenceEntry halton_entry() {
     return {"halton", "Halton sequence, radical inverses in the first 1024 primes, not scrambled",
-            []() -> std::unique_ptr<Sequence> { return std::make_unique<Halton>(); }};
+            [](std::uint64_t) -> std::unique_ptr<Sequence> { return std::make_unique<Halton>(); }};
 }
 
 }  // namespace raycache::tracer

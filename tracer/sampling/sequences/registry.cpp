@@ -9,7 +9,13 @@
 
 #define RAYCACHE_SEQUENCES(X) \
     X(sobol)                  \
-    X(halton)
+    X(halton)                 \
+    X(halton_scrambled)       \
+    X(sobol_owen_02)          \
+    X(sobol_owen_4d)          \
+    X(r2)                     \
+    X(pmj02)                  \
+    X(random_numbers)
 
 namespace raycache::tracer {
 
@@ -24,10 +30,14 @@ const std::vector<SequenceEntry>& sequences() {
     return all;
 }
 
-std::unique_ptr<Sequence> make_sequence(const std::string& name) {
+std::unique_ptr<Sequence> make_sequence(const std::string& name, std::uint64_t seed) {
     const auto& all = sequences();
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
-    if (found != all.end()) return found->make();
+    if (found != all.end()) {
+        auto sequence = found->make(seed);
+        sequence->name_ = name;
+        return sequence;
+    }
     std::string names;
     for (const auto& entry : all) names += (names.empty() ? "" : ", ") + entry.name;
     throw UsageError(

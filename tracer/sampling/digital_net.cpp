@@ -1,0 +1,44 @@
+#include "tracer/sampling/digital_net.hpp"
+
+namespace raycache::tracer {
+namespace {
+
+/// Vectors over GF(2), bit per component, each reduced by those before it.
+class Basis {
+public:
+    /// False where `row` depends on the rows added before.
+    bool add(std::uint32_t row) {
+        while (row != 0) {
+            std::uint32_t& pivot = by_top_bit_[static_cast<unsigned>(std::bit_width(row)) - 1];
+            if (pivot == 0) {
+                pivot = row;
+                return true;
+            }
+            row ^= pivot;
+        }
+        return false;
+    }
+
+private:
+    std::array<std::uint32_t, 32> by_top_bit_{};
+};
+
+/// Row `digit` of the generator matrix, cut to m columns.
+std::uint32_t row_of(const DirectionNumbers& v, unsigned digit, unsigned m) {
+    std::uint32_t row = 0;
+    for (unsigned column = 0; column < m; ++column) row |= ((v[column] >> (31 - digit)) & 1U) << column;
+    return row;
+}
+
+}  // namespace
+
+unsigned equal_cell_bits(std::span<const DirectionNumbers> dimensions, unsigned m) {
+    Basis basis;
+    for (unsigned k = 0; (k + 1) * dimensions.size() <= m; ++k) {
+        for (const DirectionNumbers& v : dimensions)
+            if (!basis.add(row_of(v, k, m))) return k;
+    }
+    return m / static_cast<unsigned>(dimensions.size());
+}
+
+}  // namespace raycache::tracer
