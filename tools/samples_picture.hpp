@@ -14,9 +14,9 @@ namespace raycache::tools {
 struct SamplePanel {
     std::string title, subtitle;
     std::vector<tracer::FixedPoint2> points;
-    std::vector<std::uint32_t> index;  ///< sample index of each point
-    std::vector<tracer::FixedPoint2> base;
-    double mu = 1;  ///< side of the windows around `base`; what none of them covers is shaded as a hole
+    std::vector<std::uint32_t> index;       ///< sample index of each point
+    std::vector<tracer::FixedPoint2> base;  ///< middles of the windows
+    double mu = 1;                          ///< side of the windows; what none of them covers is shaded as a hole
 };
 
 /// Panels side by side, two in a row. Points are coloured by sample index, of `n`.

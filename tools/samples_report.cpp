@@ -19,7 +19,13 @@ using tracer::FixedPoint2;
 std::optional<double> window(const tracer::StrategySettings& s, const tracer::SamplingStrategy& strategy) {
     if (s.decorrelation == "coherent") return 0;
     if (s.decorrelation == "cranley-patterson") return 1;
-    if (s.decorrelation == "micro-jitter") return tracer::effective_mu(strategy.settings().parameters);
+    tracer::DecorrelationSettings p = strategy.settings().parameters;
+    if (s.decorrelation == "micro-jitter")
+        return tracer::effective_mu(tracer::resolve_k_and_s(p, *tracer::make_sequence(s.sequence, p.seed)));
+    if (s.decorrelation == "scrambling-distance") {
+        p.cycles_mu = !p.mu;
+        return tracer::effective_mu(p);
+    }
     return std::nullopt;
 }
 
@@ -60,7 +66,10 @@ SamplesReport sample(const SamplesRequest& request) {
             fmt::format("--spp {} with --copies {}; expected at most {} samples, and {} together; "
                         "give smaller numbers",
                         n, request.copies, tracer::max_star_discrepancy_points, max_shown_samples));
-    const tracer::SamplingStrategy strategy(request.strategy, std::max(request.first, request.second) + 1);
+    // The pixels of a square picture, row by row.
+    tracer::StrategySettings settings = request.strategy;
+    settings.parameters.width = static_cast<std::uint32_t>(std::ceil(std::sqrt(request.copies)));
+    const tracer::SamplingStrategy strategy(settings, std::max(request.first, request.second) + 1);
     SamplesReport r;
     r.strategy = request.strategy;
     r.copies = request.copies;
@@ -84,6 +93,10 @@ SamplesReport sample(const SamplesRequest& request) {
     if (r.mu && *r.mu >= 0x1p-32 && n <= tracer::max_coverage_points)
         r.coverage = tracer::coverage(r.panel.base, *r.mu);
     r.panel.mu = r.mu.value_or(1);
+    if (request.strategy.decorrelation == "scrambling-distance" || request.strategy.parameters.cycles_mu) {
+        const auto half = static_cast<std::uint32_t>(r.panel.mu * 0x1p31);  // one-sided: the base point is a corner
+        for (FixedPoint2& p : r.panel.base) p = {p.x + half, p.y + half};
+    }
     r.panel.title = fmt::format("{} {}", request.strategy.decorrelation, r.mu ? fmt::format("mu={:.4g}", *r.mu) : "");
     r.panel.subtitle = r.coverage ? fmt::format("{:.1f} % of the square never sampled", 100 * r.coverage->holes())
                                   : fmt::format("largest hole {:.4f}", r.copies_hole);

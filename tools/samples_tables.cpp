@@ -96,6 +96,7 @@ std::vector<Variant> variants(const std::string& sequence, std::uint64_t seed) {
         settings.sequence = sequence;
         settings.decorrelation = decorrelation;
         settings.parameters.seed = seed;
+        settings.parameters.width = tracer::test_picture_side;
         settings.parameters.k = k;
         settings.parameters.s = s;
         all.push_back({label, settings});
@@ -269,7 +270,7 @@ const std::vector<std::string>& samples_tables() {
 
 std::vector<SamplesTable> make_samples_tables(const std::string& name, const std::string& sequence,
                                               std::uint64_t seed) {
-    tracer::make_sequence(sequence);  // a name that is unknown is refused once, not in every row
+    tracer::make_sequence(sequence, seed);  // a name that is unknown is refused once, not in every row
     for (const Named& n : registry())
         if (n.name == name) return n.make(sequence, seed);
     throw UsageError(fmt::format("--table '{}'; expected one of: {}", name, fmt::join(samples_tables(), ", ")));
