@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "tracer/paths/bsdf/bsdf.hpp"
 #include "tracer/paths/surface.hpp"
 #include "tracer/ray.hpp"
 #include "tracer/vec.hpp"
@@ -28,10 +29,15 @@ struct PathLanes {
     Ray rays[count];  ///< the ray that is to be walked next, or that led to `hits`
     Vec3 throughput[count];
     Vec3 radiance[count];  ///< the path's estimate so far
+    /// Density per solid angle of the direction of `rays`, for weighing lights that it meets: infinite where a shadow
+    /// ray could not have found them, 0 where shadow rays alone count.
+    float scatter_pdf[count];
+    std::uint8_t reflections[count], transmissions[count];  ///< bounces so far, by kind
 
     // Of the present vertex.
     Hit hits[count];
     Surface surface[count];
+    Shading shading[count];  ///< only where the material is not diffuse
 
     // Between aim_at_light and collect_light.
     Ray shadow_rays[count];
@@ -43,8 +49,12 @@ struct PathLanes {
         rays[to] = from.rays[lane];
         throughput[to] = from.throughput[lane];
         radiance[to] = from.radiance[lane];
+        scatter_pdf[to] = from.scatter_pdf[lane];
+        reflections[to] = from.reflections[lane];
+        transmissions[to] = from.transmissions[lane];
         hits[to] = from.hits[lane];
         surface[to] = from.surface[lane];
+        shading[to] = from.shading[lane];
         shadow_rays[to] = from.shadow_rays[lane];
         contribution[to] = from.contribution[lane];
     }
