@@ -307,12 +307,10 @@ TEST_CASE("surfaces: alpha BLEND shows what is behind in its share") {
     }
 }
 
-TEST_CASE("surfaces: a roughness texture is read once more per vertex and steers the coat") {
+TEST_CASE("surfaces: texels are read where a material has a texture, twice where it has two, and a mirror is one") {
     Scene scene = panes(1, surface(1, 1), false);
     scene.materials[0].base_color = {1, 1, 1};
-    scene.textures = {{1, 1, {255, 0, 255, 255}, "smooth metal"}};
-    scene.texcoords.resize(scene.positions.size());
-    scene.materials[0].metallic_roughness_texture = 0;
+    scene.textures = {{1, 1, {255, 0, 255, 255}, "smooth metal"}, {1, 1, {255, 255, 255, 255}, "white"}};
     scene.sky = {};
     // Behind the eye, only where a mirror at normal incidence shows it.
     append(scene, quad({-2, -2, 1}, {2, -2, 1}, {2, 2, 1}, {-2, 2, 1}));
@@ -321,7 +319,30 @@ TEST_CASE("surfaces: a roughness texture is read once more per vertex and steers
     scene.materials[1].emission = {1, 1, 1};
     scene.materials[1].base_color = {0, 0, 0};
     scene.material_of[2] = scene.material_of[3] = 1;
-    CHECK(estimate(PreparedScene(scene, {}), limits(1), 16, 4).mean == Approx(1).epsilon(1e-3));
-    scene.materials[0].metallic_roughness_texture = -1;
+    const auto texels_of = [&] {
+        const PreparedScene prepared(scene, {});
+        RayCollector rays(prepared);
+        std::uint32_t asked = 0;
+        trace_pictures(prepared, rays, 16, limits(0), [&] { return asked++ < 9; });
+        return rays.texels;
+    };
+    constexpr std::size_t pixels = 256;
+    CHECK(texels_of() == 0);
     CHECK(estimate(PreparedScene(scene, {}), limits(1), 16, 4).mean < 0.8);
+    scene.materials[0].metallic_roughness_texture = 0;
+    CHECK(texels_of() == pixels);
+    CHECK(estimate(PreparedScene(scene, {}), limits(1), 16, 4).mean == Approx(1).epsilon(1e-3));
+    scene.materials[0].base_color_texture = 1;
+    CHECK(texels_of() == 2 * pixels);
+}
+
+TEST_CASE("lights: shadow rays that graze a lamp are not blocked by it, though they start beside the surface") {
+    // Far from the origin the start moves by more than the slack at the ray's end.
+    Scene scene = room(surface(0, 1));
+    for (Vec3& p : scene.positions) p = p + Vec3{0, 60, 0};
+    scene.cameras[0].eye = {0, 61, 7};
+    scene.cameras[0].forward = normalize(Vec3{1.4F, 63, -1} - scene.cameras[0].eye);
+    scene.cameras[0].up = normalize(cross(cross(scene.cameras[0].forward, {0, 1, 0}), scene.cameras[0].forward));
+    scene.cameras[0].vertical_fov = 1;
+    modes_agree(PreparedScene(std::move(scene), {}), limits(0), 16, 200);
 }
