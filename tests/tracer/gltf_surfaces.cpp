@@ -111,9 +111,9 @@ TEST_CASE("surface factors that are no numbers are errors that name them") {
     SECTION("transmission") {
         material = glass({{"transmissionFactor", "much"}}, nullptr, nullptr), name = "transmissionFactor";
     }
-    SECTION("index") { material = glass(nullptr, {{"ior", json::array()}}, nullptr), name = "ior"; }
+    SECTION("index") { material = glass(nullptr, {{"ior", {1.5}}}, nullptr), name = "ior"; }
     SECTION("thickness") {
-        material = glass(nullptr, nullptr, {{"thicknessFactor", json::object()}}), name = "thicknessFactor";
+        material = glass(nullptr, nullptr, {{"thicknessFactor", {{"metres", 1}}}}), name = "thicknessFactor";
     }
     const std::string message = error_of(with_material(material));
     INFO(message);
