@@ -1,5 +1,6 @@
-// Capture (traversal, shading, encoding and writing the trace) against Embree's rtcIntersect1 / rtcOccluded1 on the
-// same rays, in turn within one repetition, so that a machine that slows down slows both.
+// Capture (traversal, shading, encoding and writing the trace) and rendering (traversal and shading alone) against
+// Embree's rtcIntersect1 / rtcOccluded1 on the same rays, in turn within one repetition, so that a machine that slows
+// down slows both.
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -10,6 +11,8 @@
 
 #include "bench/workload.hpp"
 #include "tracer/bvh/embree_reference.hpp"
+#include "tracer/simt/recorder.hpp"
+#include "tracer/simt/warp_traversal.hpp"
 
 namespace raycache::bench {
 namespace {
@@ -49,16 +52,37 @@ private:
     std::vector<LoggedRay>& log_;
 };
 
-std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeReference& embree) {
-    std::vector<LoggedRay> log;
-    RayLogger logger(embree, log);
-    PathIntegrator<RayLogger> integrator(scene().scene(), capture.camera(), scene().lights(), scene().texels(),
-                                         capture.strategy(), capture.settings().paths, logger);
+/// Traces the first launch by `traversal`.
+template <class Traversal>
+void trace_launch(const Capture& capture, Traversal& traversal) {
+    PathIntegrator<Traversal> integrator(scene().scene(), capture.camera(), scene().lights(), scene().texels(),
+                                         capture.strategy(), capture.settings().paths, traversal);
     std::array<PathLane, traces::warp_lanes> jobs;
     std::array<Vec3, traces::warp_lanes> radiance;
     for (std::uint32_t warp = 0; warp < capture.header().warps_per_launch; ++warp)
         integrator.trace(capture.lane_jobs(0, warp, jobs), jobs, radiance);
+}
+
+std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeReference& embree) {
+    std::vector<LoggedRay> log;
+    RayLogger logger(embree, log);
+    trace_launch(capture, logger);
     return log;
+}
+
+/// Seconds of this thread that Embree takes for the rays.
+double embree_seconds(const EmbreeReference& embree, const std::vector<LoggedRay>& log) {
+    const double start = thread_seconds();
+    std::uint64_t found = 0;
+    for (const LoggedRay& r : log) found += r.shadow ? embree.occluded(r.ray) : embree.intersect(r.ray).found();
+    benchmark::DoNotOptimize(found);
+    return thread_seconds() - start;
+}
+
+void count_rates(benchmark::State& state, double our_rate, double their_rate) {
+    state.counters["rate_to_embree"] = our_rate / their_rate;
+    state.counters["Mrays_per_s"] = our_rate / 1e6;
+    state.counters["embree_Mrays_per_s"] = their_rate / 1e6;
 }
 
 void capture_against_embree(benchmark::State& state, const char* strategy) {
@@ -75,22 +99,39 @@ void capture_against_embree(benchmark::State& state, const char* strategy) {
             write_capture(*capture, path.string(), [&](std::uint64_t, std::uint64_t done) { rays += done; });
             ours = thread_seconds() - start;
         });
-        const double start = thread_seconds();
-        std::uint64_t found = 0;
-        for (const LoggedRay& r : log) found += r.shadow ? embree.occluded(r.ray) : embree.intersect(r.ray).found();
-        const double theirs = thread_seconds() - start;
-        benchmark::DoNotOptimize(found);
+        const double theirs = embree_seconds(embree, log);
         state.SetIterationTime(ours);
-        const double our_rate = static_cast<double>(rays) / ours, their_rate = static_cast<double>(log.size()) / theirs;
-        state.counters["rate_to_embree"] = our_rate / their_rate;
-        state.counters["Mrays_per_s"] = our_rate / 1e6;
-        state.counters["embree_Mrays_per_s"] = their_rate / 1e6;
+        count_rates(state, static_cast<double>(rays) / ours, static_cast<double>(log.size()) / theirs);
         state.counters["bytes_per_ray"] =
             static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(rays);
     }
     std::filesystem::remove(path);
 }
 
+void render_against_embree(benchmark::State& state, const char* strategy) {
+    static const EmbreeReference embree(scene().scene());
+    const auto capture = make_capture(strategy);
+    const std::vector<LoggedRay> log = rays_of(*capture, embree);
+    NullRecorder recorder;
+    WarpTraversal<NullRecorder> traversal(scene().scene(), scene().bvh(), scene().texels(), recorder);
+    const auto rays = static_cast<double>(log.size());  // ours are the same, up to ties between hits
+    for (auto _ : state) {
+        const double start = thread_seconds();
+        trace_launch(*capture, traversal);
+        const double ours = thread_seconds() - start;
+        state.SetIterationTime(ours);
+        count_rates(state, rays / ours, rays / embree_seconds(embree, log));
+    }
+}
+
+BENCHMARK_CAPTURE(render_against_embree, coherent, "coherent")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(render_against_embree, cranley_patterson, "cranley-patterson")
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(capture_against_embree, coherent, "coherent")
     ->Iterations(1)
     ->UseManualTime()

@@ -125,6 +125,15 @@ std::string SceneOptions::command() const {
 void SamplingOptions::add_picture(CLI::App& app) {
     app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels")->capture_default_str();
     app.add_option("--bounces", bounces, "bounce rays of a path, 0 to 64")->capture_default_str();
+    app.add_option("--bounces-diffuse", bounces_diffuse,
+                   "at most so many of them reflections, diffuse or glossy; default: all");
+    app.add_option("--bounces-transmission", bounces_transmission,
+                   "at most so many of them through surfaces or inside glass; default: all");
+    app.add_option(
+           "--lights", lights,
+           "how lights are found: auto (nee on diffuse surfaces, mis on others), bsdf (bounce rays), nee (shadow "
+           "rays), mis (both, weighted)")
+        ->capture_default_str();
     app.add_flag("--russian-roulette", russian_roulette, "end dim paths early at random; breaks lock-step comparisons");
 }
 
@@ -155,6 +164,17 @@ void SamplingOptions::add_launches(CLI::App& app) {
         "else tile");
 }
 
+tracer::PathSettings SamplingOptions::paths() const {
+    tracer::PathSettings settings;
+    settings.bounces = bounces;
+    settings.russian_roulette = russian_roulette;
+    settings.bounces_diffuse = bounces_diffuse.value_or(settings.bounces_diffuse);
+    settings.bounces_transmission = bounces_transmission.value_or(settings.bounces_transmission);
+    settings.lights = tracer::light_sampling_from(lights);
+    tracer::check(settings);
+    return settings;
+}
+
 tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, const std::string& decorrelation,
                                                    std::uint64_t spp) const {
     tracer::StrategySettings settings;
@@ -177,14 +197,23 @@ tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, 
     return settings;
 }
 
+/// Options of paths() that differ from the defaults.
+std::string SamplingOptions::path_command() const {
+    std::string text;
+    if (bounces_diffuse) text += fmt::format(" --bounces-diffuse {}", *bounces_diffuse);
+    if (bounces_transmission) text += fmt::format(" --bounces-transmission {}", *bounces_transmission);
+    if (lights != "auto") text += " --lights " + lights;
+    if (russian_roulette) text += " --russian-roulette";
+    return text;
+}
+
 tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, const std::string& sequence,
                                                  const std::string& decorrelation, std::uint64_t spp) const {
     tracer::CaptureSettings settings;
     const Resolution size = parse_resolution(resolution);
     settings.width = size.width;
     settings.height = size.height;
-    settings.paths.bounces = bounces;
-    settings.paths.russian_roulette = russian_roulette;
+    settings.paths = paths();
     settings.strategy = strategy(sequence, decorrelation, spp);
     settings.trace_samples = trace_samples;
     const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
@@ -193,9 +222,9 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
         "--thread-map {} --k {} --s {}{}{} --seed {}",
-        scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces,
-        russian_roulette ? " --russian-roulette" : "", tracer::to_string(settings.thread_map), k, s,
-        mu.empty() ? "" : " --mu " + mu, interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed);
+        scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces, path_command(),
+        tracer::to_string(settings.thread_map), k, s, mu.empty() ? "" : " --mu " + mu,
+        interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed);
     return settings;
 }
 

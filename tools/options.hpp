@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,18 +35,25 @@ struct SamplingOptions {
     std::string resolution = "512x512", mu, k = "2.5", s = "2";
     std::string thread_map;  ///< empty: the strategy's own
     std::uint32_t bounces = 3;
+    std::optional<std::uint32_t> bounces_diffuse, bounces_transmission;
+    std::string lights = "auto";
     bool russian_roulette = false;
     unsigned interleave = 8;
     std::uint64_t seed = 1, trace_samples = 8;
 
-    void add_picture(CLI::App&);   ///< --resolution --bounces --russian-roulette
+    void add_picture(CLI::App&);   ///< --resolution, and what paths() is made of
     void add_strategy(CLI::App&);  ///< --k --s --mu --interleave --seed
     void add_launches(CLI::App&);  ///< --trace-samples --thread-map
 
+    /// Throws UsageError for values out of range.
+    tracer::PathSettings paths() const;
     tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation,
                                       std::uint64_t spp) const;
     tracer::CaptureSettings capture(const SceneOptions&, const std::string& sequence, const std::string& decorrelation,
                                     std::uint64_t spp) const;
+
+private:
+    std::string path_command() const;
 };
 
 /// Which GPUs, and how the table is cut and printed.

@@ -49,11 +49,8 @@ void run(const Options& o, bool given_exposure) {
     const Resolution size = parse_resolution(o.sampling.resolution);
     settings.width = size.width;
     settings.height = size.height;
-    settings.paths.bounces = o.sampling.bounces;
-    settings.paths.russian_roulette = o.sampling.russian_roulette;
+    settings.paths = o.sampling.paths();
     settings.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
-    if (o.sampling.bounces > tracer::max_bounces)
-        throw UsageError(fmt::format("--bounces {}; expected 0 to {}", o.sampling.bounces, tracer::max_bounces));
     const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
 
     const auto limit = o.threads.apply();

@@ -27,8 +27,7 @@ CaptureSettings checked(CaptureSettings settings) {
     };
     check_size(settings.width, "width");
     check_size(settings.height, "height");
-    if (settings.paths.bounces > max_bounces)
-        throw UsageError(fmt::format("{} bounces; expected 0 to {}", settings.paths.bounces, max_bounces));
+    check(settings.paths);
     settings.strategy.parameters.width = settings.width;
     return settings;
 }

@@ -12,7 +12,7 @@ namespace raycache::tracer {
 class PreparedScene {
 public:
     PreparedScene(Scene scene, const BvhSettings& settings)
-        : scene_(std::move(scene)),
+        : scene_(with_offset_scale(std::move(scene))),
           bvh_(make_bvh2(build_bvh(scene_, settings), scene_)),
           lights_(scene_),
           texels_(scene_) {}
@@ -26,6 +26,11 @@ public:
     const Camera& camera() const { return scene_.cameras.front(); }
 
 private:
+    static Scene with_offset_scale(Scene scene) {
+        scene.offset_scale = Scene::offset_scale_of(scene.bounds());
+        return scene;
+    }
+
     Scene scene_;
     Bvh2 bvh_;
     Lights lights_;

@@ -53,7 +53,8 @@ class BadCommandLines(ProgramTest):
         self.refuses_option(CAPTURE, "--spp", "4294967297")
 
     def test_other_numbers_that_are_out_of_range(self):
-        for option, values in (("--bounces", ("-1", "65", "x")), ("--threads", ("0", "-2", "two", "100000")),
+        for option, values in (("--bounces", ("-1", "65", "x")), ("--bounces-diffuse", ("-1", "65", "x")),
+                               ("--bounces-transmission", ("-1", "65", "x")), ("--lights", ("sun", "")), ("--threads", ("0", "-2", "two", "100000")),
                                ("--k", ("-1", "nan", "inf", "k")), ("--s", ("0", "-1", "x")),
                                ("--mu", ("-0.5", "nan", "inf", "-nan", "half", "0.5x")),
                                ("--seed", ("-1", "x")), ("--fov", ("-1", "180", "nan", "wide")),

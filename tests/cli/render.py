@@ -50,7 +50,8 @@ class Render(ProgramTest):
     def test_strategy_sequence_seed_bounces_and_exposure_change_the_picture(self):
         plain = self.render("plain.png")
         for i, options in enumerate((["--strategy", "coherent"], ["--sequence", "halton"], ["--seed", "2"],
-                                     ["--bounces", "0"], ["--exposure", "-3"])):
+                                     ["--bounces", "0"], ["--bounces-diffuse", "1"], ["--lights", "bsdf"],
+                                     ["--exposure", "-3"])):
             with self.subTest(options):
                 self.assertNotEqual(self.render(f"{i}.png", *options), plain)
 

@@ -137,19 +137,24 @@ TEST_CASE("a textured mesh without the texture coordinates asked for gets zeros 
     CHECK(warnings[0].find("1 textured primitives lack") != std::string::npos);
 }
 
-TEST_CASE("MASK keeps its cutoff, BLEND becomes opaque with one warning") {
+TEST_CASE("MASK keeps its cutoff, BLEND its alpha unless that is always 1") {
     GltfBuilder builder = with_material({{"alphaMode", "MASK"}, {"alphaCutoff", 0.25}});
-    const int blend = builder.add("materials", {{"alphaMode", "BLEND"}});
+    const int blend = builder.add(
+        "materials", {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}});
+    const int full = builder.add("materials", {{"alphaMode", "BLEND"}});
     const int unset = builder.add("materials", {{"alphaMode", "MASK"}});
-    for (const int material : {blend, unset})
+    for (const int material : {blend, full, unset})
         builder.place({{"attributes", {{"POSITION", builder.triangle_positions()}}}, {"material", material}});
     const auto [scene, warnings] = load(builder);
     CHECK(scene.materials[0].alpha_mask);
     CHECK(scene.materials[0].alpha_cutoff == 0.25F);
+    CHECK_FALSE(scene.materials[0].alpha_blend);
     CHECK_FALSE(scene.materials[1].alpha_mask);
-    CHECK(scene.materials[2].alpha_cutoff == 0.5F);
-    REQUIRE(warnings.size() == 1);
-    CHECK(warnings[0].find("1 materials have alphaMode BLEND") != std::string::npos);
+    CHECK(scene.materials[1].alpha_blend);
+    CHECK(scene.materials[1].alpha == 0.25F);
+    CHECK_FALSE(scene.materials[2].alpha_blend);
+    CHECK(scene.materials[3].alpha_cutoff == 0.5F);
+    CHECK(warnings.empty());
 }
 
 TEST_CASE("emission is the factor times the strength") {
@@ -174,11 +179,10 @@ TEST_CASE("an emissive texture is ignored with one warning") {
 TEST_CASE("extensions without effect are listed in one warning") {
     GltfBuilder builder;
     builder.place_triangle();
-    builder.doc["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_transmission", "KHR_texture_transform"};
+    builder.doc["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_sheen", "KHR_texture_transform"};
     const auto [scene, warnings] = load(builder);
     REQUIRE(warnings.size() == 1);
-    CHECK(warnings[0].find("KHR_materials_ior, KHR_materials_transmission, KHR_texture_transform; transmissive "
-                           "surfaces are treated as opaque diffuse") != std::string::npos);
+    CHECK(warnings[0].find("ignored extensions: KHR_materials_sheen, KHR_texture_transform") != std::string::npos);
 }
 
 TEST_CASE("material references and values out of range are errors that name them") {

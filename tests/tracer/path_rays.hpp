@@ -24,9 +24,12 @@ public:
         keep(mask, rays, shadow_rays);
         return traversal_.occluded(mask, type, bounce, rays);
     }
-    void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) {}
+    void read_texels(std::uint32_t mask, traces::RayType, std::uint8_t, const std::uint32_t*) {
+        texels += static_cast<std::size_t>(std::popcount(mask));
+    }
 
     std::vector<Ray> closest_rays, shadow_rays;
+    std::size_t texels = 0;  ///< read for shading
 
 private:
     static void keep(std::uint32_t mask, const Ray* rays, std::vector<Ray>& out) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "tracer/scene/scene.hpp"
@@ -12,7 +13,9 @@ namespace raycache::tracer {
 struct LightSample {
     Vec3 direction;          ///< unit, towards the light
     float distance = 0;      ///< infinity for the sun
+    Vec3 normal;             ///< of the light's surface, on either side
     Vec3 radiance_over_pdf;  ///< radiance / (probability density per solid angle); black: not lit from here
+    float pdf = 0;           ///< that density; infinity for a sun of no size, which no other ray can meet
 };
 
 class Lights {
@@ -26,6 +29,18 @@ public:
     /// what selection leaves of it is stretched to [0, 1) again.
     LightSample sample(Vec3 from, Vec2 random) const;
 
+    /// The density with which sample() aims at a point of an emissive triangle that a ray of unit direction met at
+    /// `distance`; `cosine` is between the two.
+    float emitter_pdf(Vec3 emission, float distance, float cosine) const;
+
+    /// The sun as rays meet it that leave the scene: a disc of constant radiance.
+    struct SunDisc {
+        Vec3 radiance;
+        float pdf = 0;  ///< as in LightSample
+    };
+    /// Black outside the disc, and everywhere for a sun of no size.
+    SunDisc sun_at(Vec3 direction) const;
+
 private:
     struct Emitter {
         Vec3 corner, edge1, edge2;
@@ -38,8 +53,11 @@ private:
 
     std::vector<Emitter> emitters_;
     std::vector<float> cumulative_;  ///< of power, normalised; last is 1
+    double power_ = 0;               ///< of all emitters: the sum of area times luminance
     bool sun_ = false;
     Sun sun_light_;
+    float sun_sine2_ = 0;  ///< of the disc's radius
+    float sun_pdf_ = std::numeric_limits<float>::infinity();
 };
 
 }  // namespace raycache::tracer

@@ -1,9 +1,10 @@
-// A path tracer for the lanes of one warp, in megakernel order: camera rays; then per path vertex a texel read where
-// the surface is textured, a shadow ray, a bounce ray. Diffuse surfaces, emitters seen directly, sky seen by camera and
-// bounce rays. Lanes that have left the scene or whose throughput is black stay idle until the warp ends.
+// A path tracer for the lanes of one warp, in megakernel order: camera rays; then per path vertex texel reads where the
+// surface is textured, a shadow ray, a bounce ray. Surfaces: Lambert's, done here, and those of bsdf/. Emitters, sun
+// and sky: LightSampling. Lanes that have left the scene or whose throughput is black stay idle until the warp ends.
 //
 // Dimensions of a sample, in pairs: (0,1) position in the pixel; vertex b = 0, 1, …: (2+4b, 3+4b) point on a light,
-// (4+4b, 5+4b) bounce direction; behind all vertices one dimension each for Russian roulette.
+// (4+4b, 5+4b) bounce direction, whose first number also chooses among the lobes of a surface; behind all vertices one
+// dimension each for Russian roulette.
 //
 // Who walks the rays is a parameter, a class with
 //   void closest(mask, RayType, bounce, const Ray*, Hit*);         nearest hit per lane
@@ -23,6 +24,9 @@
 #include "tracer/paths/camera_rays.hpp"
 #include "tracer/paths/directions.hpp"
 #include "tracer/paths/lights.hpp"
+#include "tracer/paths/path_lanes.hpp"
+#include "tracer/paths/path_settings.hpp"
+#include "tracer/paths/scattering.hpp"
 #include "tracer/paths/surface.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/scene/scene.hpp"
@@ -31,28 +35,10 @@
 
 namespace raycache::tracer {
 
-struct PathSettings {
-    std::uint32_t bounces = 3;  ///< bounce rays of a path, 0 … 64
-    /// Paths end early at random from the third vertex on, by throughput. Off for comparisons: it breaks lock step.
-    bool russian_roulette = false;
-};
-inline constexpr std::uint32_t max_bounces = 64;
-
-/// Sample dimensions that a path of `bounces` bounces needs.
-inline std::uint32_t path_dimensions(std::uint32_t bounces) { return 2 + 5 * (bounces + 1); }
-
-/// What a lane works on.
-struct PathLane {
-    std::uint32_t x = 0, y = 0;
-    std::uint32_t pixel = 0;              ///< y * width + x: identifies the pixel to the decorrelation
-    std::uint32_t sample = 0;             ///< sample index
-    const std::uint32_t* base = nullptr;  ///< SamplingStrategy::base_point(sample)
-};
-
 template <class Traversal>
 class PathIntegrator {
 public:
-    static constexpr unsigned lanes = traces::warp_lanes;
+    static constexpr unsigned lanes = PathLanes::count;
 
     PathIntegrator(const Scene& scene, const CameraRays& camera, const Lights& lights, const TexelLayout& texels,
                    const SamplingStrategy& strategy, const PathSettings& settings, Traversal& traversal)
@@ -64,122 +50,222 @@ public:
           settings_(settings),
           traversal_(traversal) {}
 
-    /// Traces one path per lane of `mask`; adds nothing elsewhere. `radiance` receives each lane's estimate.
+    /// Traces one path per lane of `mask` in megakernel order; adds nothing elsewhere. `radiance` receives each lane's
+    /// estimate.
     void trace(std::uint32_t mask, const std::array<PathLane, lanes>& job, std::array<Vec3, lanes>& radiance) {
-        job_ = &job;
-        radiance_ = &radiance;
-        for_each(mask, [&](unsigned l) {
-            rays_[l] = camera_.ray(job[l].x, job[l].y, pair(l, 0));
-            throughput_[l] = {1, 1, 1};
-            radiance[l] = {};
-        });
-        traversal_.closest(mask, traces::RayType::camera, 0, rays_, hits_);
-        std::uint32_t alive = arrive(mask, 0);
+        PathLanes& p = lanes_;
+        for_each(mask, [&](unsigned l) { p.job[l] = job[l]; });
+        generate(mask, p);
+        traversal_.closest(mask, traces::RayType::camera, 0, p.rays, p.hits);
+        std::uint32_t alive = arrive(mask, 0, p);
         for (std::uint32_t vertex = 0; alive != 0; ++vertex) {
-            alive = shade(alive, vertex);
-            connect_to_light(alive, vertex);
-            if (vertex == settings_.bounces) break;
-            alive = scatter(alive, vertex);
+            const auto bounce = static_cast<std::uint8_t>(vertex);
+            alive = shade(alive, vertex, p);
+            if (const std::uint32_t shadow = aim_at_light(alive, vertex, p); shadow != 0)
+                collect_light(shadow & ~traversal_.occluded(shadow, traces::RayType::shadow, bounce, p.shadow_rays), p);
+            alive = scatter(alive, vertex, p);
             if (alive == 0) break;
-            traversal_.closest(alive, traces::RayType::bounce, static_cast<std::uint8_t>(vertex + 1), rays_, hits_);
-            alive = arrive(alive, vertex + 1);
+            traversal_.closest(alive, traces::RayType::bounce, static_cast<std::uint8_t>(vertex + 1), p.rays, p.hits);
+            alive = arrive(alive, vertex + 1, p);
         }
+        for_each(mask, [&](unsigned l) { radiance[l] = p.radiance[l]; });
+    }
+
+    // The stages of a path, in this order per vertex; rays are walked between them. Each works on the lanes of `mask`,
+    // all at the same vertex (0 = where the camera ray ends), and returns the lanes that go on. They keep nothing
+    // between calls but what is in PathLanes.
+
+    /// Camera rays of `p.job`.
+    void generate(std::uint32_t mask, PathLanes& p) const {
+        for_each(mask, [&](unsigned l) {
+            p.rays[l] = camera_.ray(p.job[l].x, p.job[l].y, pair(p.job[l], 0));
+            p.throughput[l] = {1, 1, 1};
+            p.radiance[l] = {};
+            p.scatter_pdf[l] = infinity;
+            p.reflections[l] = p.transmissions[l] = 0;
+        });
+    }
+
+    /// From `p.hits`: adds the light that the rays met, returns the lanes that hit a surface; the others end.
+    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        std::uint32_t hit = 0;
+        for_each(mask, [&](unsigned l) {
+            const bool for_lights_alone = vertex > settings_.bounces || p.reflections[l] > settings_.bounces_diffuse ||
+                                          p.transmissions[l] > settings_.bounces_transmission;
+            const float pdf = p.scatter_pdf[l];
+            if (!p.hits[l].found()) {
+                if (!for_lights_alone) p.radiance[l] += p.throughput[l] * scene_.sky;
+                if (vertex > 0 && pdf > 0) {  // the camera does not see the sun's disc
+                    const auto sun = lights_.sun_at(p.rays[l].direction);
+                    p.radiance[l] += p.throughput[l] * sun.radiance * power_heuristic(pdf, sun.pdf);
+                }
+                return;
+            }
+            p.surface[l] = surface_at(scene_, p.rays[l], p.hits[l]);
+            if (const Vec3 emission = p.surface[l].material->emission; pdf > 0 && max_component(emission) > 0) {
+                const float cosine = dot(p.surface[l].geometric_normal, p.rays[l].direction);
+                p.radiance[l] += p.throughput[l] * emission *
+                                 power_heuristic(pdf, lights_.emitter_pdf(emission, p.hits[l].t, cosine));
+            }
+            if (!for_lights_alone) hit |= 1U << l;
+        });
+        return hit;
+    }
+
+    /// Reads textures (through the traversal, which records it). Diffuse surfaces multiply their reflectance in, and
+    /// lanes on black ones end; the others leave `p.shading`.
+    std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) {
+        std::uint32_t colored = 0, roughened = 0, alive = 0;
+        std::uint32_t color_element[lanes], roughness_element[lanes];
+        for_each(mask, [&](unsigned l) {
+            const Material& material = *p.surface[l].material;
+            Shading shading{material.base_color, material.alpha, material.metallic, material.roughness};
+            const Hit& hit = p.hits[l];
+            if (material.base_color_texture >= 0) {
+                const auto texel =
+                    texels_.fetch(material.base_color_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
+                color_element[l] = texel.element;
+                shading.color *= texel.color;
+                shading.alpha *= texel.alpha;
+                colored |= 1U << l;
+            }
+            if (material.diffuse()) {
+                p.throughput[l] *= shading.color;
+            } else {
+                if (material.metallic_roughness_texture >= 0) {
+                    const auto texel = texels_.fetch(material.metallic_roughness_texture,
+                                                     texcoord_at(scene_, hit.triangle, hit.u, hit.v));
+                    roughness_element[l] = texel.element;
+                    shading.roughness *= static_cast<float>(texel.stored[1]) / 255;
+                    shading.metallic *= static_cast<float>(texel.stored[2]) / 255;
+                    roughened |= 1U << l;
+                }
+                p.shading[l] = shading;
+            }
+            if (max_component(p.throughput[l]) > 0) alive |= 1U << l;
+        });
+        const auto bounce = static_cast<std::uint8_t>(vertex);
+        if (colored != 0) traversal_.read_texels(colored, type_of(vertex), bounce, color_element);
+        if (roughened != 0) traversal_.read_texels(roughened, type_of(vertex), bounce, roughness_element);
+        return alive;
+    }
+
+    /// Fills `p.shadow_rays` and `p.contribution` of the lanes returned: those that a light may reach.
+    std::uint32_t aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        if (lights_.empty() || settings_.lights == LightSampling::bsdf) return 0;
+        std::uint32_t shadow = 0;
+        for_each(mask, [&](unsigned l) {
+            const Surface& s = p.surface[l];
+            const LightSample light = lights_.sample(s.position, pair(p.job[l], 2 + 4 * vertex));
+            const bool diffuse = s.material->diffuse();
+            BsdfValue f;
+            if (diffuse) {
+                const float cosine = dot(s.shading_normal, light.direction);
+                if (!(cosine > 0) || !(dot(s.geometric_normal, light.direction) > 0)) return;
+                f.pdf = cosine * std::numbers::inv_pi_v<float>;
+                f.value = {f.pdf, f.pdf, f.pdf};
+            } else {
+                f = Scattering(s, p.shading[l], p.rays[l].direction).evaluate(light.direction);
+            }
+            p.contribution[l] = p.throughput[l] * light.radiance_over_pdf * f.value;
+            if (!(max_component(p.contribution[l]) > 0)) return;
+            // No bounce ray will find the light where the path ends.
+            if (weighs_both(diffuse) && may_go_on(p, l, vertex, is_transmission(s, light.direction)))
+                p.contribution[l] = p.contribution[l] * power_heuristic(light.pdf, f.pdf);
+            p.shadow_rays[l] = shadow_ray(s, light);
+            shadow |= 1U << l;
+        });
+        return shadow;
+    }
+
+    /// Adds the light of the lanes whose shadow ray met nothing.
+    void collect_light(std::uint32_t unblocked, PathLanes& p) const {
+        for_each(unblocked, [&](unsigned l) { p.radiance[l] += p.contribution[l]; });
+    }
+
+    /// Chooses the next direction. Paths end at their last vertex, where the direction points below the surface or
+    /// nothing comes from it, and by roulette.
+    std::uint32_t scatter(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        const bool bsdf_alone = settings_.lights == LightSampling::bsdf && !lights_.empty();
+        if (vertex == settings_.bounces && !bsdf_alone) return 0;
+        std::uint32_t alive = 0;
+        for_each(mask, [&](unsigned l) {
+            const Surface& s = p.surface[l];
+            const bool diffuse = s.material->diffuse();
+            const Vec2 random = pair(p.job[l], 4 + 4 * vertex);
+            Vec3 direction;
+            bool delta = false;
+            float pdf = 0;
+            if (diffuse) {
+                // Cosine-distributed: reflectance, already in the throughput, is the whole weight.
+                direction = to_world(cosine_hemisphere(random), s.shading_normal);
+                if (!(dot(direction, s.geometric_normal) > 0)) return;
+                pdf = dot(direction, s.shading_normal) * std::numbers::inv_pi_v<float>;
+            } else {
+                const Scattering scattering(s, p.shading[l], p.rays[l].direction);
+                const BsdfSample sample = scattering.sample(random);
+                if (!(max_component(sample.weight) > 0)) return;
+                direction = sample.wi;
+                delta = sample.delta;
+                if (!delta && weighs_both(diffuse)) pdf = scattering.evaluate(direction).pdf;
+                p.throughput[l] *= sample.weight;
+            }
+            const bool transmission = is_transmission(s, direction);
+            // The last ray of `bsdf` looks for the light that a shadow ray would have found in the other modes.
+            if (!may_go_on(p, l, vertex, transmission) && (!bsdf_alone || delta)) return;
+            if (settings_.russian_roulette && vertex >= 2) {
+                const float survival = std::min(0.95F, max_component(p.throughput[l]));
+                if (number(p.job[l], 2 + 4 * (settings_.bounces + 1) + vertex) >= survival) return;
+                p.throughput[l] = p.throughput[l] / survival;
+            }
+            ++(transmission ? p.transmissions : p.reflections)[l];
+            p.scatter_pdf[l] = delta || bsdf_alone ? infinity : weighs_both(diffuse) ? pdf : 0;
+            p.rays[l] = {s.leave(direction), direction, 0, infinity};
+            alive |= 1U << l;
+        });
+        return alive;
     }
 
 private:
+    static constexpr float infinity = std::numeric_limits<float>::infinity();
+
     template <class Body>
     static void for_each(std::uint32_t mask, Body body) {
         for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
     }
 
-    float number(unsigned l, std::uint32_t dimension) const {
-        const PathLane& lane = (*job_)[l];
+    float number(const PathLane& lane, std::uint32_t dimension) const {
         return to_unit_float(strategy_.value(lane.base[dimension], lane.pixel, lane.sample, dimension));
     }
-    Vec2 pair(unsigned l, std::uint32_t dimension) const { return {number(l, dimension), number(l, dimension + 1)}; }
+    Vec2 pair(const PathLane& lane, std::uint32_t dimension) const {
+        return {number(lane, dimension), number(lane, dimension + 1)};
+    }
+
+    /// Ends before the light's plane, to which the ray's start may have moved nearer.
+    static Ray shadow_ray(const Surface& s, const LightSample& light) {
+        constexpr float short_of_light = 0.9999F;
+        const Vec3 origin = s.leave(light.direction);
+        const float nearer = dot(origin - s.position, light.normal) / dot(light.direction, light.normal);
+        return {origin, light.direction, 0, (light.distance - nearer) * short_of_light};
+    }
+    /// Share of the technique that has density `mine` where another has `other`, exponent 2 (Veach & Guibas 1995).
+    static float power_heuristic(float mine, float other) {
+        if (mine == infinity) return 1;
+        const float ratio = other / mine;
+        return 1 / (1 + ratio * ratio);
+    }
+    /// Whether light is sought by shadow and bounce rays both.
+    bool weighs_both(bool diffuse) const {
+        return settings_.lights == LightSampling::mis || (settings_.lights == LightSampling::automatic && !diffuse);
+    }
+    /// Whether there is a next vertex behind a bounce of this kind.
+    bool may_go_on(const PathLanes& p, unsigned l, std::uint32_t vertex, bool transmission) const {
+        return vertex < settings_.bounces && (transmission ? p.transmissions[l] < settings_.bounces_transmission
+                                                           : p.reflections[l] < settings_.bounces_diffuse);
+    }
 
     static traces::RayType type_of(std::uint32_t vertex) {
         return vertex == 0 ? traces::RayType::camera : traces::RayType::bounce;
-    }
-
-    /// Lanes that hit a surface; the others see the sky.
-    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t hit = 0;
-        for_each(mask, [&](unsigned l) {
-            if (!hits_[l].found()) {
-                (*radiance_)[l] += throughput_[l] * scene_.sky;
-                return;
-            }
-            hit |= 1U << l;
-            surface_[l] = surface_at(scene_, rays_[l], hits_[l]);
-            // Later vertices meet emitters by shadow rays only.
-            if (vertex == 0) (*radiance_)[l] += surface_[l].material->emission;
-        });
-        return hit;
-    }
-
-    /// Reads textures and multiplies the reflectance in. Lanes on black surfaces end.
-    std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t textured = 0, alive = 0;
-        std::uint32_t element[lanes];
-        for_each(mask, [&](unsigned l) {
-            const Material& material = *surface_[l].material;
-            Vec3 reflectance = material.base_color;
-            if (material.base_color_texture >= 0) {
-                const Hit& hit = hits_[l];
-                const auto texel =
-                    texels_.fetch(material.base_color_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
-                element[l] = texel.element;
-                reflectance *= texel.color;
-                textured |= 1U << l;
-            }
-            throughput_[l] *= reflectance;
-            if (max_component(throughput_[l]) > 0) alive |= 1U << l;
-        });
-        if (textured != 0)
-            traversal_.read_texels(textured, type_of(vertex), static_cast<std::uint8_t>(vertex), element);
-        return alive;
-    }
-
-    void connect_to_light(std::uint32_t mask, std::uint32_t vertex) {
-        if (lights_.empty()) return;
-        Ray rays[lanes];
-        Vec3 contribution[lanes];
-        std::uint32_t shadow = 0;
-        for_each(mask, [&](unsigned l) {
-            const Surface& s = surface_[l];
-            const LightSample light = lights_.sample(s.position, pair(l, 2 + 4 * vertex));
-            const float cosine = dot(s.shading_normal, light.direction);
-            if (!(cosine > 0) || !(dot(s.geometric_normal, light.direction) > 0)) return;
-            contribution[l] = throughput_[l] * light.radiance_over_pdf * (cosine * std::numbers::inv_pi_v<float>);
-            if (!(max_component(contribution[l]) > 0)) return;
-            constexpr float short_of_light = 0.9999F;
-            rays[l] = {s.leave(light.direction), light.direction, 0, light.distance * short_of_light};
-            shadow |= 1U << l;
-        });
-        if (shadow == 0) return;
-        const std::uint32_t blocked =
-            traversal_.occluded(shadow, traces::RayType::shadow, static_cast<std::uint8_t>(vertex), rays);
-        for_each(shadow & ~blocked, [&](unsigned l) { (*radiance_)[l] += contribution[l]; });
-    }
-
-    /// Chooses the next direction. Lanes whose direction points below the surface, or that lose at roulette, end.
-    std::uint32_t scatter(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t alive = 0;
-        for_each(mask, [&](unsigned l) {
-            const Surface& s = surface_[l];
-            // Cosine-distributed on a diffuse surface: reflectance is the whole weight.
-            const Vec3 direction = to_world(cosine_hemisphere(pair(l, 4 + 4 * vertex)), s.shading_normal);
-            if (!(dot(direction, s.geometric_normal) > 0)) return;
-            if (settings_.russian_roulette && vertex >= 2) {
-                const float survival = std::min(0.95F, max_component(throughput_[l]));
-                if (number(l, 2 + 4 * (settings_.bounces + 1) + vertex) >= survival) return;
-                throughput_[l] = throughput_[l] / survival;
-            }
-            rays_[l] = {s.leave(direction), direction, 0, std::numeric_limits<float>::infinity()};
-            alive |= 1U << l;
-        });
-        return alive;
     }
 
     const Scene& scene_;
@@ -190,12 +276,7 @@ private:
     PathSettings settings_;
     Traversal& traversal_;
 
-    const std::array<PathLane, lanes>* job_ = nullptr;
-    std::array<Vec3, lanes>* radiance_ = nullptr;
-    Ray rays_[lanes];
-    Hit hits_[lanes];
-    Surface surface_[lanes];
-    Vec3 throughput_[lanes];
+    PathLanes lanes_;
 };
 
 }  // namespace raycache::tracer

@@ -18,8 +18,9 @@ using nlohmann::json;
 /// glTF itself needs about 6 levels; tinygltf and remove_extras() descend recursively.
 constexpr int max_json_depth = 64;
 
-constexpr std::array understood_extensions{"KHR_materials_emissive_strength", "KHR_mesh_quantization"};
-constexpr std::array transmission_extensions{"KHR_materials_transmission", "KHR_materials_ior", "KHR_materials_volume"};
+constexpr std::array understood_extensions{"KHR_materials_emissive_strength", "KHR_materials_ior",
+                                           "KHR_materials_transmission", "KHR_materials_volume",
+                                           "KHR_mesh_quantization"};
 
 bool is_understood(const std::string& extension) {
     return std::find(understood_extensions.begin(), understood_extensions.end(), extension) !=
@@ -92,16 +93,12 @@ void check_extensions(const json& document, const GltfReport& report) {
                         "export the scene without it");
     }
     std::string ignored;
-    bool transmission = false;
     for (const std::string& name : strings_in(document, "extensionsUsed")) {
         if (is_understood(name)) continue;
         ignored += (ignored.empty() ? "" : ", ") + name;
-        transmission = transmission || std::find(transmission_extensions.begin(), transmission_extensions.end(),
-                                                 name) != transmission_extensions.end();
     }
     if (ignored.empty()) return;
-    report.warning("ignored extensions: " + ignored +
-                   (transmission ? "; transmissive surfaces are treated as opaque diffuse" : ""));
+    report.warning("ignored extensions: " + ignored);
 }
 
 /// Removes the array `key` from the document and returns it; each of its items must be an object.

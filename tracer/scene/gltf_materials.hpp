@@ -10,9 +10,9 @@ namespace raycache::tracer {
 
 struct GltfMaterials {
     std::vector<Material> materials;  ///< as in the file, then glTF's default if it is used or the only one;
-                                      ///< `base_color_texture` is an index into `images`
+                                      ///< its textures are indices into `images`
     std::vector<int> texcoord_set;    ///< one per material: n of TEXCOORD_n, or -1 without a texture
-    std::vector<int> images;          ///< images of the file that a used material has as base colour, each once
+    std::vector<int> images;          ///< images of the file that a used material reads, each once
 };
 
 /// `used`: one per material of the file and one for glTF's default; false for those no placed primitive has, whose

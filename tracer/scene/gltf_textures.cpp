@@ -96,12 +96,12 @@ std::vector<Texture> decode_gltf_textures(const std::vector<GltfImageBytes>& ima
         result.push_back(std::move(decoded[i]));
     }
     for (Material& material : materials)
-        if (material.base_color_texture >= 0)
-            material.base_color_texture = index_of[static_cast<std::size_t>(material.base_color_texture)];
+        for (int* slot : {&material.base_color_texture, &material.metallic_roughness_texture})
+            if (*slot >= 0) *slot = index_of[static_cast<std::size_t>(*slot)];
     if (failed > 0)
         report.warning(
-            fmt::format("{} textures cannot be used and their base colour factor alone is; the first is {} ({})",
-                        failed, images[first_failed].name, problems[first_failed]));
+            fmt::format("{} textures cannot be used and the material's factors alone are; the first is {} ({})", failed,
+                        images[first_failed].name, problems[first_failed]));
     return result;
 }
 

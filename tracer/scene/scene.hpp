@@ -23,7 +23,19 @@ struct Material {
     int base_color_texture = -1;  ///< index into Scene::textures, or -1
     bool alpha_mask = false;      ///< glTF alphaMode MASK: a texel below `alpha_cutoff` is a hole
     float alpha_cutoff = 0.5F;
-    Vec3 emission{0, 0, 0};  ///< radiance, W sr^-1 m^-2, factor times strength
+    bool alpha_blend = false;  ///< glTF alphaMode BLEND: rays pass straight with probability 1 - alpha
+    Vec3 emission{0, 0, 0};    ///< radiance, W sr^-1 m^-2, factor times strength
+
+    float metallic = 0, roughness = 1;    ///< factors, 0 … 1
+    int metallic_roughness_texture = -1;  ///< green times roughness, blue times metallic; index, or -1
+    float transmission = 0;               ///< share of the dielectric that is glass, 0 … 1
+    float ior = 1.5F;                     ///< index of refraction, at least 1; 0: reflects everything
+    bool thin = true;                     ///< glass is a pane; false: it bounds a solid
+
+    /// Lambert's surface: neither metal nor glass, and a coat of roughness 1 counts as none.
+    bool diffuse() const {
+        return metallic == 0 && roughness >= 1 && transmission == 0 && !alpha_blend && metallic_roughness_texture < 0;
+    }
 };
 
 /// A pinhole camera.
@@ -56,9 +68,14 @@ struct Scene {
     std::vector<Camera> cameras;  ///< at least one; the first is the default
     Vec3 sky{0, 0, 0};            ///< constant radiance from outside, 0 = none
     std::optional<Sun> sun;
+    /// Unit of the distance that rays keep from the surface they leave (Surface::leave). 1 where the largest extent is
+    /// 1 to 256, else a power of two in proportion to it. PreparedScene sets it.
+    float offset_scale = 1;
 
     std::size_t triangle_count() const { return material_of.size(); }
     Box bounds() const;
+    /// `offset_scale` of a scene with these bounds.
+    static float offset_scale_of(const Box& bounds);
 };
 
 /// Where a scene comes from and how it is to be lit and seen.

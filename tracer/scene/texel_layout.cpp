@@ -63,7 +63,8 @@ TexelLayout::Texel TexelLayout::fetch(int index, Vec2 texcoord) const {
     return {first_[static_cast<std::size_t>(index)] + tile * tile_width * tile_height +
                 sector * sector_width * sector_height + in_sector,
             {linear[rgba[0]], linear[rgba[1]], linear[rgba[2]]},
-            static_cast<float>(rgba[3]) / 255.0F};
+            static_cast<float>(rgba[3]) / 255.0F,
+            rgba};
 }
 
 Vec2 texcoord_at(const Scene& scene, std::uint32_t triangle, float u, float v) {

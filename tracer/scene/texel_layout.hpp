@@ -20,6 +20,7 @@ public:
         std::uint32_t element;  ///< index into the texel region (4 B elements)
         Vec3 color;             ///< linear
         float alpha;
+        const std::uint8_t* stored;  ///< the four channels, for textures that are no colours
     };
     Texel fetch(int texture, Vec2 texcoord) const;
 

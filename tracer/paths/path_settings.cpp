@@ -1,0 +1,39 @@
+#include "tracer/paths/path_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace raycache::tracer {
+
+namespace {
+constexpr std::array names{std::pair{"auto", LightSampling::automatic}, std::pair{"bsdf", LightSampling::bsdf},
+                           std::pair{"nee", LightSampling::nee}, std::pair{"mis", LightSampling::mis}};
+}  // namespace
+
+LightSampling light_sampling_from(const std::string& name) {
+    for (const auto& [known, value] : names)
+        if (name == known) return value;
+    throw UsageError(fmt::format("--lights '{}'; expected one of: auto, bsdf, nee, mis", name));
+}
+
+std::string to_string(LightSampling lights) {
+    for (const auto& [known, value] : names)
+        if (lights == value) return known;
+    return {};
+}
+
+void check(const PathSettings& settings) {
+    const auto limit = [](std::uint32_t bounces, const char* kind) {
+        if (bounces > max_bounces)
+            throw UsageError(fmt::format("{} {}bounces; expected 0 to {}", bounces, kind, max_bounces));
+    };
+    limit(settings.bounces, "");
+    limit(settings.bounces_diffuse, "diffuse ");
+    limit(settings.bounces_transmission, "transmission ");
+}
+
+}  // namespace raycache::tracer
