@@ -7,6 +7,7 @@
 #include "tools/console.hpp"
 #include "tools/explain_job.hpp"
 #include "tools/heat_map.hpp"
+#include "tools/launch_source.hpp"
 #include "tools/options.hpp"
 #include "traces/error.hpp"
 
@@ -75,6 +76,8 @@ void run(const Options& o) {
     const auto limit = o.threads.apply();
     if (o.traces.empty()) return explain_scene(o);
     const TraceFiles files(o.traces);
+    for (std::size_t i = 0; i < o.traces.size(); ++i)
+        refuse_wavefront(*files.sources[i].header, o.traces[i], "explain");
     explain_and_print(o, files.sources, o.traces);
 }
 
