@@ -23,6 +23,7 @@
 #include "tracer/paths/camera_rays.hpp"
 #include "tracer/paths/directions.hpp"
 #include "tracer/paths/lights.hpp"
+#include "tracer/paths/path_lanes.hpp"
 #include "tracer/paths/surface.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/scene/scene.hpp"
@@ -41,18 +42,10 @@ inline constexpr std::uint32_t max_bounces = 64;
 /// Sample dimensions that a path of `bounces` bounces needs.
 inline std::uint32_t path_dimensions(std::uint32_t bounces) { return 2 + 5 * (bounces + 1); }
 
-/// What a lane works on.
-struct PathLane {
-    std::uint32_t x = 0, y = 0;
-    std::uint32_t pixel = 0;              ///< y * width + x: identifies the pixel to the decorrelation
-    std::uint32_t sample = 0;             ///< sample index
-    const std::uint32_t* base = nullptr;  ///< SamplingStrategy::base_point(sample)
-};
-
 template <class Traversal>
 class PathIntegrator {
 public:
-    static constexpr unsigned lanes = traces::warp_lanes;
+    static constexpr unsigned lanes = PathLanes::count;
 
     PathIntegrator(const Scene& scene, const CameraRays& camera, const Lights& lights, const TexelLayout& texels,
                    const SamplingStrategy& strategy, const PathSettings& settings, Traversal& traversal)
@@ -64,26 +57,122 @@ public:
           settings_(settings),
           traversal_(traversal) {}
 
-    /// Traces one path per lane of `mask`; adds nothing elsewhere. `radiance` receives each lane's estimate.
+    /// Traces one path per lane of `mask` in megakernel order; adds nothing elsewhere. `radiance` receives each lane's
+    /// estimate.
     void trace(std::uint32_t mask, const std::array<PathLane, lanes>& job, std::array<Vec3, lanes>& radiance) {
-        job_ = &job;
-        radiance_ = &radiance;
-        for_each(mask, [&](unsigned l) {
-            rays_[l] = camera_.ray(job[l].x, job[l].y, pair(l, 0));
-            throughput_[l] = {1, 1, 1};
-            radiance[l] = {};
-        });
-        traversal_.closest(mask, traces::RayType::camera, 0, rays_, hits_);
-        std::uint32_t alive = arrive(mask, 0);
+        PathLanes& p = lanes_;
+        for_each(mask, [&](unsigned l) { p.job[l] = job[l]; });
+        generate(mask, p);
+        traversal_.closest(mask, traces::RayType::camera, 0, p.rays, p.hits);
+        std::uint32_t alive = arrive(mask, 0, p);
         for (std::uint32_t vertex = 0; alive != 0; ++vertex) {
-            alive = shade(alive, vertex);
-            connect_to_light(alive, vertex);
-            if (vertex == settings_.bounces) break;
-            alive = scatter(alive, vertex);
+            const auto bounce = static_cast<std::uint8_t>(vertex);
+            alive = shade(alive, vertex, p);
+            if (const std::uint32_t shadow = aim_at_light(alive, vertex, p); shadow != 0)
+                collect_light(shadow & ~traversal_.occluded(shadow, traces::RayType::shadow, bounce, p.shadow_rays), p);
+            alive = scatter(alive, vertex, p);
             if (alive == 0) break;
-            traversal_.closest(alive, traces::RayType::bounce, static_cast<std::uint8_t>(vertex + 1), rays_, hits_);
-            alive = arrive(alive, vertex + 1);
+            traversal_.closest(alive, traces::RayType::bounce, static_cast<std::uint8_t>(vertex + 1), p.rays, p.hits);
+            alive = arrive(alive, vertex + 1, p);
         }
+        for_each(mask, [&](unsigned l) { radiance[l] = p.radiance[l]; });
+    }
+
+    // The stages of a path, in this order per vertex; rays are walked between them. Each works on the lanes of `mask`,
+    // all at the same vertex (0 = where the camera ray ends), and returns the lanes that go on. They keep nothing
+    // between calls but what is in PathLanes.
+
+    /// Camera rays of `p.job`.
+    void generate(std::uint32_t mask, PathLanes& p) const {
+        for_each(mask, [&](unsigned l) {
+            p.rays[l] = camera_.ray(p.job[l].x, p.job[l].y, pair(p.job[l], 0));
+            p.throughput[l] = {1, 1, 1};
+            p.radiance[l] = {};
+        });
+    }
+
+    /// From `p.hits`: lanes that hit a surface; the others see the sky and end.
+    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        std::uint32_t hit = 0;
+        for_each(mask, [&](unsigned l) {
+            if (!p.hits[l].found()) {
+                p.radiance[l] += p.throughput[l] * scene_.sky;
+                return;
+            }
+            hit |= 1U << l;
+            p.surface[l] = surface_at(scene_, p.rays[l], p.hits[l]);
+            // Later vertices meet emitters by shadow rays only.
+            if (vertex == 0) p.radiance[l] += p.surface[l].material->emission;
+        });
+        return hit;
+    }
+
+    /// Reads textures (through the traversal, which records it) and multiplies the reflectance in. Lanes on black
+    /// surfaces end.
+    std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) {
+        std::uint32_t textured = 0, alive = 0;
+        std::uint32_t element[lanes];
+        for_each(mask, [&](unsigned l) {
+            const Material& material = *p.surface[l].material;
+            Vec3 reflectance = material.base_color;
+            if (material.base_color_texture >= 0) {
+                const Hit& hit = p.hits[l];
+                const auto texel =
+                    texels_.fetch(material.base_color_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
+                element[l] = texel.element;
+                reflectance *= texel.color;
+                textured |= 1U << l;
+            }
+            p.throughput[l] *= reflectance;
+            if (max_component(p.throughput[l]) > 0) alive |= 1U << l;
+        });
+        if (textured != 0)
+            traversal_.read_texels(textured, type_of(vertex), static_cast<std::uint8_t>(vertex), element);
+        return alive;
+    }
+
+    /// Fills `p.shadow_rays` and `p.contribution` of the lanes returned: those that a light may reach.
+    std::uint32_t aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        if (lights_.empty()) return 0;
+        std::uint32_t shadow = 0;
+        for_each(mask, [&](unsigned l) {
+            const Surface& s = p.surface[l];
+            const LightSample light = lights_.sample(s.position, pair(p.job[l], 2 + 4 * vertex));
+            const float cosine = dot(s.shading_normal, light.direction);
+            if (!(cosine > 0) || !(dot(s.geometric_normal, light.direction) > 0)) return;
+            p.contribution[l] = p.throughput[l] * light.radiance_over_pdf * (cosine * std::numbers::inv_pi_v<float>);
+            if (!(max_component(p.contribution[l]) > 0)) return;
+            constexpr float short_of_light = 0.9999F;
+            p.shadow_rays[l] = {s.leave(light.direction), light.direction, 0, light.distance * short_of_light};
+            shadow |= 1U << l;
+        });
+        return shadow;
+    }
+
+    /// Adds the light of the lanes whose shadow ray met nothing.
+    void collect_light(std::uint32_t unblocked, PathLanes& p) const {
+        for_each(unblocked, [&](unsigned l) { p.radiance[l] += p.contribution[l]; });
+    }
+
+    /// Chooses the next direction. Paths of the last vertex end, and those whose direction points below the surface or
+    /// that lose at roulette.
+    std::uint32_t scatter(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+        if (vertex == settings_.bounces) return 0;
+        std::uint32_t alive = 0;
+        for_each(mask, [&](unsigned l) {
+            const Surface& s = p.surface[l];
+            // Cosine-distributed on a diffuse surface: reflectance is the whole weight.
+            const Vec3 direction = to_world(cosine_hemisphere(pair(p.job[l], 4 + 4 * vertex)), s.shading_normal);
+            if (!(dot(direction, s.geometric_normal) > 0)) return;
+            if (settings_.russian_roulette && vertex >= 2) {
+                const float survival = std::min(0.95F, max_component(p.throughput[l]));
+                if (number(p.job[l], 2 + 4 * (settings_.bounces + 1) + vertex) >= survival) return;
+                p.throughput[l] = p.throughput[l] / survival;
+            }
+            p.rays[l] = {s.leave(direction), direction, 0, std::numeric_limits<float>::infinity()};
+            alive |= 1U << l;
+        });
+        return alive;
     }
 
 private:
@@ -92,94 +181,15 @@ private:
         for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
     }
 
-    float number(unsigned l, std::uint32_t dimension) const {
-        const PathLane& lane = (*job_)[l];
+    float number(const PathLane& lane, std::uint32_t dimension) const {
         return to_unit_float(strategy_.value(lane.base[dimension], lane.pixel, lane.sample, dimension));
     }
-    Vec2 pair(unsigned l, std::uint32_t dimension) const { return {number(l, dimension), number(l, dimension + 1)}; }
+    Vec2 pair(const PathLane& lane, std::uint32_t dimension) const {
+        return {number(lane, dimension), number(lane, dimension + 1)};
+    }
 
     static traces::RayType type_of(std::uint32_t vertex) {
         return vertex == 0 ? traces::RayType::camera : traces::RayType::bounce;
-    }
-
-    /// Lanes that hit a surface; the others see the sky.
-    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t hit = 0;
-        for_each(mask, [&](unsigned l) {
-            if (!hits_[l].found()) {
-                (*radiance_)[l] += throughput_[l] * scene_.sky;
-                return;
-            }
-            hit |= 1U << l;
-            surface_[l] = surface_at(scene_, rays_[l], hits_[l]);
-            // Later vertices meet emitters by shadow rays only.
-            if (vertex == 0) (*radiance_)[l] += surface_[l].material->emission;
-        });
-        return hit;
-    }
-
-    /// Reads textures and multiplies the reflectance in. Lanes on black surfaces end.
-    std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t textured = 0, alive = 0;
-        std::uint32_t element[lanes];
-        for_each(mask, [&](unsigned l) {
-            const Material& material = *surface_[l].material;
-            Vec3 reflectance = material.base_color;
-            if (material.base_color_texture >= 0) {
-                const Hit& hit = hits_[l];
-                const auto texel =
-                    texels_.fetch(material.base_color_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
-                element[l] = texel.element;
-                reflectance *= texel.color;
-                textured |= 1U << l;
-            }
-            throughput_[l] *= reflectance;
-            if (max_component(throughput_[l]) > 0) alive |= 1U << l;
-        });
-        if (textured != 0)
-            traversal_.read_texels(textured, type_of(vertex), static_cast<std::uint8_t>(vertex), element);
-        return alive;
-    }
-
-    void connect_to_light(std::uint32_t mask, std::uint32_t vertex) {
-        if (lights_.empty()) return;
-        Ray rays[lanes];
-        Vec3 contribution[lanes];
-        std::uint32_t shadow = 0;
-        for_each(mask, [&](unsigned l) {
-            const Surface& s = surface_[l];
-            const LightSample light = lights_.sample(s.position, pair(l, 2 + 4 * vertex));
-            const float cosine = dot(s.shading_normal, light.direction);
-            if (!(cosine > 0) || !(dot(s.geometric_normal, light.direction) > 0)) return;
-            contribution[l] = throughput_[l] * light.radiance_over_pdf * (cosine * std::numbers::inv_pi_v<float>);
-            if (!(max_component(contribution[l]) > 0)) return;
-            constexpr float short_of_light = 0.9999F;
-            rays[l] = {s.leave(light.direction), light.direction, 0, light.distance * short_of_light};
-            shadow |= 1U << l;
-        });
-        if (shadow == 0) return;
-        const std::uint32_t blocked =
-            traversal_.occluded(shadow, traces::RayType::shadow, static_cast<std::uint8_t>(vertex), rays);
-        for_each(shadow & ~blocked, [&](unsigned l) { (*radiance_)[l] += contribution[l]; });
-    }
-
-    /// Chooses the next direction. Lanes whose direction points below the surface, or that lose at roulette, end.
-    std::uint32_t scatter(std::uint32_t mask, std::uint32_t vertex) {
-        std::uint32_t alive = 0;
-        for_each(mask, [&](unsigned l) {
-            const Surface& s = surface_[l];
-            // Cosine-distributed on a diffuse surface: reflectance is the whole weight.
-            const Vec3 direction = to_world(cosine_hemisphere(pair(l, 4 + 4 * vertex)), s.shading_normal);
-            if (!(dot(direction, s.geometric_normal) > 0)) return;
-            if (settings_.russian_roulette && vertex >= 2) {
-                const float survival = std::min(0.95F, max_component(throughput_[l]));
-                if (number(l, 2 + 4 * (settings_.bounces + 1) + vertex) >= survival) return;
-                throughput_[l] = throughput_[l] / survival;
-            }
-            rays_[l] = {s.leave(direction), direction, 0, std::numeric_limits<float>::infinity()};
-            alive |= 1U << l;
-        });
-        return alive;
     }
 
     const Scene& scene_;
@@ -190,12 +200,7 @@ private:
     PathSettings settings_;
     Traversal& traversal_;
 
-    const std::array<PathLane, lanes>* job_ = nullptr;
-    std::array<Vec3, lanes>* radiance_ = nullptr;
-    Ray rays_[lanes];
-    Hit hits_[lanes];
-    Surface surface_[lanes];
-    Vec3 throughput_[lanes];
+    PathLanes lanes_;
 };
 
 }  // namespace raycache::tracer
