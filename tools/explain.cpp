@@ -29,6 +29,7 @@ struct Options {
 
 void explain_and_print(const Options& o, const std::vector<LaunchSource>& sources,
                        const std::vector<std::string>& names) {
+    for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, names[i], "explain");
     ExplainRequest request;
     request.sources = {&sources[0], &sources[1]};
     request.names = {names[0], names[1]};
@@ -54,7 +55,9 @@ void explain_scene(const Options& o) {
     std::set<std::string> warnings;
     for (const std::string& strategy : o.strategies) {
         settings.push_back(o.sampling.capture(o.scene, o.sequence, strategy, o.spp));
-        warnings.insert(tracer::make_decorrelation(strategy, settings.back().strategy.parameters)->warning());
+        warnings.insert(
+            tracer::make_decorrelation(settings.back().strategy.decorrelation, settings.back().strategy.parameters)
+                ->warning());
     }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
@@ -76,8 +79,6 @@ void run(const Options& o) {
     const auto limit = o.threads.apply();
     if (o.traces.empty()) return explain_scene(o);
     const TraceFiles files(o.traces);
-    for (std::size_t i = 0; i < o.traces.size(); ++i)
-        refuse_wavefront(*files.sources[i].header, o.traces[i], "explain");
     explain_and_print(o, files.sources, o.traces);
 }
 

@@ -25,11 +25,7 @@ std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::C
         const tracer::Capture* capture = owned.get();
         sources.push_back({&capture->header(), [capture](std::uint32_t launch, const WarpSink& sink) {
                                const auto worker = capture->make_worker();
-                               for (std::uint32_t warp = 0; warp < capture->header().warps_per_launch; ++warp) {
-                                   traces::WarpTrace trace;
-                                   capture->trace_warp(*worker, launch, warp, trace);
-                                   sink(std::move(trace));
-                               }
+                               capture->trace_launch(*worker, launch, sink);
                            }});
     }
     return sources;

@@ -66,7 +66,7 @@ TEST_CASE("ray order keys are those computed by hand") {
 
     // The scene's extent is 1, so a ray is expected to end 0.25 on: cell (8, 0, 0) of 32, triples 000 100 000 000 000.
     CHECK(key("meister-two-point", {0, 0, 0}, {4, 0, 0}) == 0b000'000'000'100'000'000'000'000'000'000);
-    CHECK(key("meister-two-point", {0.5F, 0, 0}, {0, 0, 7}) == 0b100'000'000'001'000'000'000'000'000'000);
+    CHECK(key("meister-two-point", {0.5F, 0, 0}, {0, 0, 7}) == 0b100'100'000'001'000'000'000'000'000'000);
 
     CHECK(key("pharr", {0.5F, 0.99F, 0.07F}, {1, 0, 0}) == (1U << 8 | 15U << 4 | 8U));
 }
