@@ -2,8 +2,9 @@
 """--execution and --order: wavefronts from the command line, in files and without."""
 import csv
 import io
+import subprocess
 
-from support import GPU, LAUNCHES, SCENE, ProgramTest, main
+from support import GPU, LAUNCHES, ROOT, SCENE, ProgramTest, main
 
 WAVES = ["cranley-patterson", "cranley-patterson+wavefront", "cranley-patterson+meister", "cranley-patterson+garanzha-loop"]
 COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU, "--spp", "64"]
@@ -60,10 +61,24 @@ class Wavefront(ProgramTest):
         self.assertIn("written", text)
         self.assertIn("Wavefronts: ", text)
 
-    def test_in_time_a_sort_costs_cycles(self):
+    def test_wavefronts_are_replayed_in_time_too(self):
         rows = self.succeeds(*COMPARE, "--strategy", ",".join(WAVES[:3]), "--timed", "--json").json["rows"]
         self.assertEqual([row["strategy"] for row in rows], WAVES[:3])
-        self.assertEqual(len({row["totals"]["rays"] for row in rows}), 1)
+        self.assertEqual(len({row["rays"] for row in rows}), 1)
+        self.assertEqual(len({row["cycles"] for row in rows}), 3)
+
+    def test_the_table_of_the_docs_adds_up_to_the_report(self):
+        strategies = ["--strategy", ",".join(WAVES[:3])]
+        totals = [row["dram_bytes_per_ray"]["mean"] for row in self.succeeds(*COMPARE, *strategies, "--json").json["rows"]]
+        by_object = self.succeeds(*COMPARE, *strategies, "--by", "object", "--json").stdout
+        self.path("rows.json").write_bytes(by_object)
+        text = subprocess.run([ROOT / "tools/wavefront_table", "--from", self.path("rows.json")], check=True,
+                              stdout=subprocess.PIPE, text=True).stdout
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if "cranley" in line]
+        self.assertEqual([row[0] for row in rows], WAVES[:3])
+        for row, total in zip(rows, totals, strict=True):
+            self.assertAlmostEqual(float(row[8]), total, delta=0.051)
+            self.assertAlmostEqual(sum(map(float, row[4:8])), total, delta=0.21)
 
     def test_the_thread_count_changes_nothing(self):
         one = self.capture("one.rct", "--strategy", "cranley-patterson+moon", "--threads", "1").read_bytes()
@@ -80,7 +95,8 @@ class Wavefront(ProgramTest):
         self.refuses(2, *capture, "--execution", "wavefront", "--order", "hilbert", mentions=["'hilbert'", "meister-two-point"])
         self.refuses(2, *capture, "--strategy", "cranley-patterson+hilbert", mentions=["'hilbert'"])
         self.refuses(2, *capture, "--strategy", "nonsense+morton", mentions=["'nonsense'"])
-        self.refuses(2, *capture, "--execution", "wavefront", "--resolution", "8192x8192", mentions=["67108864 paths"])
+        self.refuses(2, "capture", *SCENE, "--execution", "wavefront", "--resolution", "8192x8192", "-o", "x.rct",
+                     mentions=["67108864 paths"])
 
     def test_commands_that_follow_a_warp_refuse_a_wavefront(self):
         self.capture("wave.rct", "--execution", "wavefront")
