@@ -41,6 +41,7 @@ void add_capture(CLI::App& app) {
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
     command->add_option("--spp", o->spp, "N, the size of the sample set; it sets mu")->capture_default_str();
     o->sampling.add_launches(*command);
+    o->sampling.add_execution(*command);
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
     o->threads.add(*command);
@@ -48,7 +49,8 @@ void add_capture(CLI::App& app) {
         "Examples:\n"
         "  raycache capture courtyard --strategy micro-jitter --spp 1024 -o mj.rct\n"
         "  raycache capture sponza.glb --strategy cranley-patterson --sequence halton --spp 1024 --trace-samples 4 -o "
-        "cp.rct");
+        "cp.rct\n"
+        "  raycache capture courtyard --strategy cranley-patterson --execution wavefront --order meister -o wave.rct");
     command->callback([o] { run(*o); });
 }
 

@@ -65,7 +65,11 @@ void add_compare(CLI::App& app) {
         app.add_subcommand("compare", "Compare strategies, from trace files or (fused, no files) from a scene");
     command->add_option("TRACES", o->traces, "trace files");
     o->scene.add(*command, false);
-    command->add_option("--strategy", o->strategies, "decorrelations, separated by commas")
+    command
+        ->add_option(
+            "--strategy", o->strategies,
+            "decorrelations, separated by commas; NAME+wavefront or NAME+ORDER runs one as a wavefront, without "
+            "sorting or with its rays sorted so")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->capture_default_str();
@@ -78,6 +82,7 @@ void add_compare(CLI::App& app) {
         ->allow_extra_args(false)
         ->capture_default_str();
     o->sampling.add_launches(*command);
+    o->sampling.add_execution(*command);
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
     o->report.add(*command, true);
@@ -87,7 +92,9 @@ void add_compare(CLI::App& app) {
         "  raycache compare cp.rct mj.rct coherent.rct --gpu gtx-980-ti --gpu h100\n"
         "  raycache compare --scene courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 "
         "--gpu gtx-980-ti\n"
-        "  raycache compare --scene sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv");
+        "  raycache compare --scene sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv\n"
+        "  raycache compare --scene courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
+        "cranley-patterson+meister,micro-jitter --gpu h100");
     command->callback([o] { run(*o); });
 }
 

@@ -7,6 +7,7 @@
 #include "tools/console.hpp"
 #include "tools/explain_job.hpp"
 #include "tools/heat_map.hpp"
+#include "tools/launch_source.hpp"
 #include "tools/options.hpp"
 #include "traces/error.hpp"
 
@@ -28,6 +29,7 @@ struct Options {
 
 void explain_and_print(const Options& o, const std::vector<LaunchSource>& sources,
                        const std::vector<std::string>& names) {
+    for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, names[i], "explain");
     ExplainRequest request;
     request.sources = {&sources[0], &sources[1]};
     request.names = {names[0], names[1]};

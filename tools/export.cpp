@@ -9,6 +9,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/export_accel_sim.hpp"
+#include "tools/launch_source.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/read_launch.hpp"
@@ -79,6 +80,7 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
     const traces::Reader reader(o.trace);
     const traces::Header& header = reader.header();
     check_launch(o, header);
+    refuse_wavefront(header, o.trace, "export");
 
     traces::OutputFile file(o.output);
     cachesim::SectorStream stream(choice, format, gpu.l1().sector_bytes,
@@ -101,6 +103,7 @@ void export_instructions(const Options& o) {
             "--format accel-sim with --gpu, --level, --sm or --l1; expected none: it holds a whole launch");
     const traces::Reader reader(o.trace);
     check_launch(o, reader.header());
+    refuse_wavefront(reader.header(), o.trace, "export");
     export_accel_sim(reader, o.launch, o.traceg, o.output);
 }
 

@@ -17,18 +17,6 @@ struct Options {
     bool json = false;
 };
 
-const char* kind_name(traces::ObjectKind kind) {
-    switch (kind) {
-        case traces::ObjectKind::node:
-            return "node";
-        case traces::ObjectKind::triangle:
-            return "triangle";
-        case traces::ObjectKind::texel:
-            return "texel";
-    }
-    return "?";
-}
-
 struct Totals {
     std::uint64_t records = 0, lane_accesses = 0, rays = 0;
 };
@@ -51,11 +39,16 @@ nlohmann::ordered_json describe(const traces::Reader& reader, const Totals& tota
     out["bounces"] = p.bounces;
     out["thread map"] = p.thread_map;
     out["layout"] = p.layout;
+    if (p.execution != "megakernel") {
+        out["execution"] = p.execution;
+        out["order"] = p.order;
+        out["kernels"] = h.kernels_per_launch;
+    }
     out["sample indices"] = h.launches;
     out["warps per launch"] = h.warps_per_launch;
     out["regions"] = nlohmann::ordered_json::array();
     for (const traces::Region& r : h.regions)
-        out["regions"].push_back({{"kind", kind_name(r.kind)},
+        out["regions"].push_back({{"kind", traces::name_of(r.kind)},
                                   {"base", fmt::format("{:#x}", r.base)},
                                   {"element bytes", r.element_size},
                                   {"stride", r.stride},

@@ -1,7 +1,10 @@
 #include "tools/launch_source.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
+#include "traces/error.hpp"
 #include "traces/read_launch.hpp"
 
 namespace raycache::tools {
@@ -22,14 +25,24 @@ std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::C
         const tracer::Capture* capture = owned.get();
         sources.push_back({&capture->header(), [capture](std::uint32_t launch, const WarpSink& sink) {
                                const auto worker = capture->make_worker();
-                               for (std::uint32_t warp = 0; warp < capture->header().warps_per_launch; ++warp) {
-                                   traces::WarpTrace trace;
-                                   capture->trace_warp(*worker, launch, warp, trace);
-                                   sink(std::move(trace));
-                               }
+                               capture->trace_launch(*worker, launch, sink);
                            }});
     }
     return sources;
+}
+
+void refuse_wavefront(const traces::Header& header, const std::string& path, const char* command) {
+    if (header.kernels_per_launch == 1) return;
+    throw UsageError(
+        fmt::format("{}: trace of a wavefront ({} kernels a launch); 'raycache {}' expects one of a megakernel, whose "
+                    "warps keep their rays from the camera on; use replay or compare, or capture it with --execution "
+                    "megakernel",
+                    path, header.kernels_per_launch, command));
+}
+
+std::string strategy_name(const traces::Provenance& p) {
+    if (p.execution == traces::Provenance{}.execution) return p.decorrelation;
+    return p.decorrelation + '+' + (p.order == "none" ? p.execution : p.order);
 }
 
 std::uint64_t count_rays(const traces::WarpTrace& warp) {

@@ -32,6 +32,12 @@ struct TraceFiles {
 /// The captures must outlive their sources.
 std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::Capture>>&);
 
+/// Throws UsageError for a trace of more than one kernel: `command` follows warps through a whole launch.
+void refuse_wavefront(const traces::Header&, const std::string& path, const char* command);
+
+/// What tables call the strategy: "micro-jitter", of a wavefront "micro-jitter+ORDER", or "+wavefront" without one.
+std::string strategy_name(const traces::Provenance&);
+
 std::uint64_t count_rays(const traces::WarpTrace&);
 
 }  // namespace raycache::tools

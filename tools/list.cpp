@@ -12,6 +12,7 @@
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
+#include "tracer/simt/orders/ray_order.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -43,6 +44,7 @@ std::vector<Topic> all_topics() {
              {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
               {"samples", "a warp = one pixel, 32 consecutive sample indices"},
               {"classes", "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}}},
+            {"orders", entries_of(tracer::ray_orders())},
             {"scenes", entries_of(tracer::builtin_scenes())}};
 }
 
@@ -84,9 +86,10 @@ void run(const Options& o) {
 
 void add_list(CLI::App& app) {
     auto o = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("list", "List strategies, sequences, GPUs, layouts, thread maps, built-in scenes");
-    command->add_option("TOPIC", o->topic, "strategies, sequences, gpus, layouts, thread-maps or scenes; default: all");
+    CLI::App* command = app.add_subcommand(
+        "list", "List strategies, sequences, GPUs, layouts, thread maps, ray orders, built-in scenes");
+    command->add_option("TOPIC", o->topic,
+                        "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all");
     command->add_flag("--json", o->json, "print JSON");
     command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
     command->footer(

@@ -175,6 +175,16 @@ tracer::PathSettings SamplingOptions::paths() const {
     return settings;
 }
 
+void SamplingOptions::add_execution(CLI::App& app) {
+    app.add_option("--execution", execution,
+                   "megakernel: a warp keeps its paths to the end; wavefront: a kernel per bounce and stage, over the "
+                   "rays that are left")
+        ->capture_default_str();
+    app.add_option("--order", order,
+                   "how a wavefront sorts the rays of a bounce before they form warps (see 'raycache list orders')")
+        ->capture_default_str();
+}
+
 tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, const std::string& decorrelation,
                                                    std::uint64_t spp) const {
     tracer::StrategySettings settings;
@@ -208,8 +218,15 @@ std::string SamplingOptions::path_command() const {
 }
 
 tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, const std::string& sequence,
-                                                 const std::string& decorrelation, std::uint64_t spp) const {
+                                                 const std::string& strategy_name, std::uint64_t spp) const {
     tracer::CaptureSettings settings;
+    const std::size_t plus = strategy_name.find('+');
+    const std::string decorrelation = strategy_name.substr(0, plus);
+    const std::string suffix = plus == std::string::npos ? "" : strategy_name.substr(plus + 1);
+    settings.execution.execution = suffix.empty() ? tracer::execution_from(execution) : tracer::Execution::wavefront;
+    settings.execution.order = suffix.empty() ? order : suffix == "wavefront" ? "none" : suffix;
+    tracer::check_execution(settings.execution);
+    const bool wavefront = settings.execution.execution == tracer::Execution::wavefront;
     const Resolution size = parse_resolution(resolution);
     settings.width = size.width;
     settings.height = size.height;
@@ -221,10 +238,11 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
     settings.program = program_name();
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
-        "--thread-map {} --k {} --s {}{}{} --seed {}",
+        "--thread-map {} --k {} --s {}{}{} --seed {}{}",
         scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces, path_command(),
         tracer::to_string(settings.thread_map), k, s, mu.empty() ? "" : " --mu " + mu,
-        interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed);
+        interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed,
+        wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;
 }
 

@@ -40,16 +40,20 @@ struct SamplingOptions {
     bool russian_roulette = false;
     unsigned interleave = 8;
     std::uint64_t seed = 1, trace_samples = 8;
+    std::string execution = "megakernel", order = "none";
 
-    void add_picture(CLI::App&);   ///< --resolution, and what paths() is made of
-    void add_strategy(CLI::App&);  ///< --k --s --mu --interleave --seed
-    void add_launches(CLI::App&);  ///< --trace-samples --thread-map
+    void add_picture(CLI::App&);    ///< --resolution, and what paths() is made of
+    void add_strategy(CLI::App&);   ///< --k --s --mu --interleave --seed
+    void add_launches(CLI::App&);   ///< --trace-samples --thread-map
+    void add_execution(CLI::App&);  ///< --execution --order
 
     /// Throws UsageError for values out of range.
     tracer::PathSettings paths() const;
     tracer::StrategySettings strategy(const std::string& sequence, const std::string& decorrelation,
                                       std::uint64_t spp) const;
-    tracer::CaptureSettings capture(const SceneOptions&, const std::string& sequence, const std::string& decorrelation,
+    /// `strategy` is a decorrelation, or DECORRELATION+ORDER or DECORRELATION+wavefront: executed so whatever
+    /// --execution and --order say.
+    tracer::CaptureSettings capture(const SceneOptions&, const std::string& sequence, const std::string& strategy,
                                     std::uint64_t spp) const;
 
 private:

@@ -24,7 +24,7 @@ std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::
         for (const cachesim::Gpu& gpu : gpus) {
             Series& made = series.emplace_back();
             made.scene = p.scene;
-            made.strategy = p.decorrelation;
+            made.strategy = strategy_name(p);
             made.sequence = p.sequence;
             made.parameters = p.parameters;
             made.thread_map = p.thread_map;
@@ -48,7 +48,11 @@ std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::
         sources[s].deliver(launch, [&](traces::WarpTrace&& warp) {
             const std::uint64_t rays = count_rays(warp);
             const auto shared = std::make_shared<const traces::WarpTrace>(std::move(warp));
-            for (auto& r : replays) r.push(shared);
+            const bool new_kernel = shared->warp != 0 && shared->warp % header.warps_per_kernel() == 0;
+            for (auto& r : replays) {
+                if (new_kernel) r.end_kernel();
+                r.push(shared);
+            }
             bar.add(1, rays);
         });
         for (std::size_t g = 0; g < gpus.size(); ++g)

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 
-#include "tracer/simt/recorder.hpp"
-#include "tracer/simt/warp_traversal.hpp"
 #include "traces/error.hpp"
 #include "traces/writer.hpp"
 
@@ -28,6 +26,7 @@ CaptureSettings checked(CaptureSettings settings) {
     check_size(settings.width, "width");
     check_size(settings.height, "height");
     check(settings.paths);
+    check_execution(settings.execution);
     settings.strategy.parameters.width = settings.width;
     return settings;
 }
@@ -72,22 +71,12 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
     p.width = settings.width;
     p.height = settings.height;
     p.bounces = settings.paths.bounces;
+    p.execution = to_string(settings.execution.execution);
+    p.order = settings.execution.order;
     return p;
 }
 
 }  // namespace
-
-class Capture::Worker {
-public:
-    explicit Worker(const Capture& capture)
-        : traversal(capture.scene_.scene(), capture.scene_.bvh(), capture.scene_.texels(), recorder),
-          integrator(capture.scene_.scene(), capture.camera_, capture.scene_.lights(), capture.scene_.texels(),
-                     capture.strategy_, capture.settings_.paths, traversal) {}
-
-    WarpRecorder recorder;
-    WarpTraversal<WarpRecorder> traversal;
-    PathIntegrator<WarpTraversal<WarpRecorder>> integrator;
-};
 
 Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     : scene_(scene),
@@ -100,6 +89,7 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     header_.regions = make_regions(scene);
     header_.launches = choose_launches(settings_, grid_.samples_per_launch());
     header_.warps_per_launch = grid_.warps();
+    if (is_wavefront()) plan_wavefront();
     for (const std::uint32_t first : header_.launches) {
         auto& points = base_points_.emplace_back();
         const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{first} + grid_.samples_per_launch(),
@@ -110,8 +100,39 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
 
 Capture::~Capture() = default;
 
-std::unique_ptr<Capture::Worker, void (*)(Capture::Worker*)> Capture::make_worker() const {
-    return {new Worker(*this), [](Worker* w) { delete w; }};
+void Capture::plan_wavefront() {
+    order_ = ray_order_entry(settings_.execution.order).make(scene_.scene());
+    // Without shadow rays a last ray of each path looks for the lights.
+    const bool lit = !scene_.lights().empty(), shadows = lit && settings_.paths.lights != LightSampling::bsdf;
+    kernels_ = wavefront_kernels(settings_.paths.bounces + (lit && !shadows ? 1 : 0), order_ != nullptr, shadows);
+    const std::uint64_t paths = std::uint64_t{grid_.warps()} * traces::warp_lanes;
+    if (paths > max_wavefront_paths)
+        throw UsageError(fmt::format(
+            "execution wavefront with {} paths a launch; expected at most {}, all of which it keeps in "
+            "memory: choose a smaller resolution{}",
+            paths, max_wavefront_paths, settings_.thread_map == ThreadMap::samples ? " or thread map tile" : ""));
+    buffers_ = add_wavefront_buffers(header_.regions, static_cast<std::uint32_t>(paths),
+                                     order_ ? sort_cost(*order_) : SortCost{});
+    header_.kernels_per_launch = static_cast<std::uint32_t>(kernels_.size());
+    const std::uint64_t warps = kernels_.size() * std::uint64_t{grid_.warps()};
+    constexpr std::uint64_t most_warps = 1U << 26;  // of a launch in a trace
+    if (warps > most_warps)
+        throw UsageError(
+            fmt::format("execution wavefront with {} kernels of {} warps; expected at most {} warps a "
+                        "launch: choose fewer bounces or a smaller resolution",
+                        kernels_.size(), grid_.warps(), most_warps));
+    header_.warps_per_launch = static_cast<std::uint32_t>(warps);
+}
+
+std::unique_ptr<Capture::Worker> Capture::make_worker() const {
+    return std::make_unique<Worker>(scene_, camera_, strategy_, settings_.paths);
+}
+
+std::unique_ptr<Wavefront> Capture::begin_wavefront(std::uint32_t launch) const {
+    return std::make_unique<Wavefront>(kernels_, buffers_, order_.get(),
+                                       [&](std::uint32_t warp, std::array<PathLane, traces::warp_lanes>& out) {
+                                           return lane_jobs(launch, warp, out);
+                                       });
 }
 
 std::uint32_t Capture::lane_jobs(std::uint32_t launch, std::uint32_t warp,
@@ -145,52 +166,105 @@ void Capture::last_symbols(const Worker& worker, traces::WarpSymbols& out) const
         worker.recorder.store_symbols(out);
 }
 
-void write_capture(const Capture& capture, const std::string& path, const Progress& progress) {
-    const traces::Header& header = capture.header();
-    traces::Writer writer(path, header);
+namespace {
 
+/// Traces ranges of warps in parallel and appends them to the file in order.
+class RangeWriter {
+public:
     struct Range {
-        std::uint32_t launch, first, count;
+        std::uint32_t launch, first, count;  ///< warps of the launch
     };
-    std::uint32_t launch = 0, warp = 0;
-    const auto next = [&](tbb::flow_control& control) -> Range {
-        if (launch == header.launches.size()) {
-            control.stop();
-            return {};
-        }
-        const Range range{launch, warp, std::min(block_warps, header.warps_per_launch - warp)};
-        warp += range.count;
-        if (warp == header.warps_per_launch) {
-            warp = 0;
-            ++launch;
-        }
-        return range;
-    };
+    /// Fills worker-local warps (launch and warp ordinal included) and their symbols; none for "not known".
+    using Trace = std::function<void(Capture::Worker&, const Range&, std::vector<traces::WarpTrace>&,
+                                     std::vector<traces::WarpSymbols>&)>;
+
+    RangeWriter(const Capture& capture, const std::string& path, const Progress& progress)
+        : header_(capture.header()),
+          progress_(progress),
+          writer_(path, header_),
+          locals_([&capture] { return Local{capture.make_worker()}; }) {}
+
+    /// All warps from `first` of `first_launch` up to the end of the last launch or of `count` warps.
+    void write(std::uint32_t launch, std::uint32_t warp, std::uint64_t count, const Trace& trace) {
+        const auto next = [&](tbb::flow_control& control) -> Range {
+            if (count == 0) {
+                control.stop();
+                return {};
+            }
+            const auto size = static_cast<std::uint32_t>(
+                std::min<std::uint64_t>({block_warps, header_.warps_per_launch - warp, count}));
+            const Range range{launch, warp, size};
+            count -= size;
+            warp += size;
+            if (warp == header_.warps_per_launch) {
+                warp = 0;
+                ++launch;
+            }
+            return range;
+        };
+        const auto encode = [&](const Range& range) {
+            Local& local = locals_.local();
+            local.warps.resize(range.count);
+            local.symbols.assign(range.count, {});
+            trace(*local.worker, range, local.warps, local.symbols);
+            return traces::encode_block(header_, local.warps, local.symbols);
+        };
+        const auto append = [&](const traces::Block& block) {
+            writer_.append(block);
+            if (progress_) progress_(block.warps, block.rays);
+        };
+        const auto tokens = static_cast<std::size_t>(2 * tbb::this_task_arena::max_concurrency());
+        tbb::parallel_pipeline(tokens,
+                               tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, next) &
+                                   tbb::make_filter<Range, traces::Block>(tbb::filter_mode::parallel, encode) &
+                                   tbb::make_filter<traces::Block, void>(tbb::filter_mode::serial_in_order, append));
+    }
+    void finish() { writer_.finish(); }
+
+private:
     struct Local {
-        std::unique_ptr<Capture::Worker, void (*)(Capture::Worker*)> worker;
+        std::unique_ptr<Capture::Worker> worker;
         std::vector<traces::WarpTrace> warps{};
         std::vector<traces::WarpSymbols> symbols{};
     };
-    tbb::enumerable_thread_specific<Local> locals([&] { return Local{capture.make_worker()}; });
-    const auto trace = [&](const Range& range) {
-        Local& local = locals.local();
-        local.warps.resize(range.count);
-        local.symbols.resize(range.count);
-        for (std::uint32_t i = 0; i < range.count; ++i) {
-            capture.trace_warp(*local.worker, range.launch, range.first + i, local.warps[i]);
-            capture.last_symbols(*local.worker, local.symbols[i]);
+    const traces::Header& header_;
+    const Progress& progress_;
+    traces::Writer writer_;
+    tbb::enumerable_thread_specific<Local> locals_;
+};
+
+}  // namespace
+
+void write_capture(const Capture& capture, const std::string& path, const Progress& progress) {
+    const traces::Header& header = capture.header();
+    RangeWriter writer(capture, path, progress);
+    if (!capture.is_wavefront()) {
+        writer.write(0, 0, std::uint64_t{header.warps_per_launch} * header.launches.size(),
+                     [&](Capture::Worker& worker, const RangeWriter::Range& range, auto& warps, auto& symbols) {
+                         for (std::uint32_t i = 0; i < range.count; ++i) {
+                             capture.trace_warp(worker, range.launch, range.first + i, warps[i]);
+                             capture.last_symbols(worker, symbols[i]);
+                         }
+                     });
+        writer.finish();
+        return;
+    }
+    const std::uint32_t per_kernel = header.warps_per_kernel();
+    for (std::uint32_t launch = 0; launch < header.launches.size(); ++launch) {
+        const auto wavefront = capture.begin_wavefront(launch);
+        for (std::uint32_t kernel = 0; kernel < header.kernels_per_launch; ++kernel) {
+            const std::uint32_t first = kernel * per_kernel;
+            writer.write(launch, first, per_kernel,
+                         [&](Capture::Worker& worker, const RangeWriter::Range& range, auto& warps, auto&) {
+                             for (std::uint32_t i = 0; i < range.count; ++i) {
+                                 wavefront->trace_warp(worker, range.first - first + i, warps[i]);
+                                 warps[i].launch = launch;
+                                 warps[i].warp = range.first + i;
+                             }
+                         });
+            wavefront->end_kernel();
         }
-        return traces::encode_block(header, local.warps, local.symbols);
-    };
-    const auto append = [&](const traces::Block& block) {
-        writer.append(block);
-        if (progress) progress(block.warps, block.rays);
-    };
-    const auto tokens = static_cast<std::size_t>(2 * tbb::this_task_arena::max_concurrency());
-    tbb::parallel_pipeline(tokens,
-                           tbb::make_filter<void, Range>(tbb::filter_mode::serial_in_order, next) &
-                               tbb::make_filter<Range, traces::Block>(tbb::filter_mode::parallel, trace) &
-                               tbb::make_filter<traces::Block, void>(tbb::filter_mode::serial_in_order, append));
+    }
     writer.finish();
 }
 

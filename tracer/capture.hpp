@@ -11,7 +11,9 @@
 #include "tracer/paths/path_integrator.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
+#include "tracer/simt/execution.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "tracer/simt/wavefront.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
 #include "traces/symbols.hpp"
@@ -26,10 +28,13 @@ struct CaptureSettings {
     /// this N. With the `samples` thread map whole groups of 32 consecutive indices are chosen instead, rounded up.
     std::uint64_t trace_samples = 8;
     ThreadMap thread_map = ThreadMap::tile;
+    ExecutionSettings execution;
     std::string program, command;  ///< for the provenance
 };
 
 inline constexpr std::uint32_t max_resolution = 16384;
+/// A wavefront keeps all paths of a launch in memory.
+inline constexpr std::uint32_t max_wavefront_paths = 1U << 24;
 
 class Capture {
 public:
@@ -43,15 +48,23 @@ public:
     const CaptureSettings& settings() const { return settings_; }
 
     /// Working memory of one thread.
-    class Worker;
-    std::unique_ptr<Worker, void (*)(Worker*)> make_worker() const;
+    using Worker = RecordingWorker;
+    std::unique_ptr<Worker> make_worker() const;
 
-    /// Traces one warp, replacing `out`. Thread-safe with one worker per thread; the result does not depend on the
-    /// worker's past.
+    /// Calls sink(WarpTrace&&) for every warp of a launch, in order. Thread-safe with one worker per thread.
+    template <class Sink>
+    void trace_launch(Worker&, std::uint32_t launch, const Sink&) const;
+
+    /// Traces one warp of a megakernel, replacing `out`. Thread-safe with one worker per thread; the result does not
+    /// depend on the worker's past.
     void trace_warp(Worker&, std::uint32_t launch, std::uint32_t warp, traces::WarpTrace& out) const;
 
-    /// The symbols of the warp that this worker traced last, for traces::encode_block; empty where they are not known:
-    /// in trees deeper than symbols can speak of, or of one leaf.
+    bool is_wavefront() const { return settings_.execution.execution == Execution::wavefront; }
+    /// A launch of a wavefront, before its first kernel. Must not outlive this object.
+    std::unique_ptr<Wavefront> begin_wavefront(std::uint32_t launch) const;
+
+    /// The symbols of the warp of a megakernel that this worker traced last, for traces::encode_block; empty where they
+    /// are not known: in trees deeper than symbols can speak of, or of one leaf.
     void last_symbols(const Worker&, traces::WarpSymbols& out) const;
 
     /// The lanes' jobs of a warp, for programs that walk the same rays by other means (benchmarks).
@@ -63,15 +76,38 @@ public:
     const CameraRays& camera() const { return camera_; }
 
 private:
+    void plan_wavefront();
+
     const PreparedScene& scene_;
     CaptureSettings settings_;
     SamplingStrategy strategy_;
     CameraRays camera_;
     LaunchGrid grid_;
+    std::unique_ptr<RayOrder> order_;  ///< of a wavefront that sorts
+    std::vector<WavefrontKernel> kernels_;
+    WavefrontBuffers buffers_;
     traces::Header header_;
     /// Base points of each launch: samples_per_launch of them.
     std::vector<std::vector<std::vector<std::uint32_t>>> base_points_;
 };
+
+template <class Sink>
+void Capture::trace_launch(Worker& worker, std::uint32_t launch, const Sink& sink) const {
+    const std::unique_ptr<Wavefront> wavefront = is_wavefront() ? begin_wavefront(launch) : nullptr;
+    const std::uint32_t per_kernel = header_.warps_per_kernel();
+    for (std::uint32_t warp = 0; warp < header_.warps_per_launch; ++warp) {
+        traces::WarpTrace trace;
+        if (!wavefront) {
+            trace_warp(worker, launch, warp, trace);
+        } else {
+            if (warp != 0 && warp % per_kernel == 0) wavefront->end_kernel();
+            wavefront->trace_warp(worker, warp % per_kernel, trace);
+            trace.launch = launch;
+            trace.warp = warp;
+        }
+        sink(std::move(trace));
+    }
+}
 
 /// Called from any thread with what was finished since the last call.
 using Progress = std::function<void(std::uint64_t warps, std::uint64_t rays)>;

@@ -12,7 +12,7 @@ namespace raycache::traces::format {
 
 using namespace std::string_view_literals;
 
-inline constexpr std::uint32_t version = 1;
+inline constexpr std::uint32_t version = 2;  ///< the newest
 
 inline constexpr std::string_view file_magic = "RCTRACE\x1a"sv;
 inline constexpr std::string_view block_magic = "RCBLOCK\x1a"sv;
@@ -52,6 +52,7 @@ inline constexpr std::uint8_t tag_region = 1, tag_mask = 2, tag_ray = 4, tag_kno
 inline constexpr std::uint32_t max_regions = 254;
 inline constexpr std::uint32_t max_launches = 1u << 20;
 inline constexpr std::uint32_t max_warps_per_launch = 1u << 26;
+inline constexpr std::uint32_t max_kernels_per_launch = 1024;
 inline constexpr std::uint32_t max_elements = (1u << 30) - 1;
 inline constexpr std::uint32_t max_element_size = 4096;
 inline constexpr std::uint64_t region_alignment = 2u << 20;

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace raycache::traces {
+#include "traces/object_kind.hpp"
 
-/// What kind of object a region holds. Stored in the file: append only.
-enum class ObjectKind : std::uint8_t { node = 0, triangle = 1, texel = 2 };
-inline constexpr unsigned object_kinds = 3;
+namespace raycache::traces {
 
 /// A link value that leads nowhere.
 inline constexpr std::uint32_t no_link = 0xffffffffu;
@@ -49,6 +47,8 @@ struct Provenance {
     std::uint64_t seed = 0;
     std::uint32_t width = 0, height = 0;  ///< pixels
     std::uint32_t bounces = 0;
+    std::string execution = "megakernel";  ///< or "wavefront"
+    std::string order = "none";            ///< of the rays of a wavefront
 
     bool operator==(const Provenance&) const = default;
 };
@@ -58,7 +58,11 @@ struct Header {
     std::vector<Region> regions;          ///< 1 … 254
     std::vector<std::uint32_t> launches;  ///< first sample index of each launch
     std::uint32_t warps_per_launch = 0;
+    /// A launch is so many kernels one after the other, of equally many warps each: a kernel begins when the one before
+    /// has ended, and finds what that wrote. Divides warps_per_launch.
+    std::uint32_t kernels_per_launch = 1;
 
+    std::uint32_t warps_per_kernel() const { return warps_per_launch / kernels_per_launch; }
     bool operator==(const Header&) const = default;
 };
 

@@ -22,9 +22,10 @@ void bound(const Origin& origin, const std::string& what, std::uint64_t value, s
 }
 
 /// The rules of header.hpp that need no link table. `at` is the offset of the region's entry.
-void check_region(const Region& region, unsigned index, const Origin& at) {
+void check_region(const Region& region, unsigned index, std::uint32_t version, const Origin& at) {
     const auto what = [&](const char* field) { return fmt::format("{} of region {}", field, index); };
-    bound(at, what("kind"), static_cast<unsigned>(region.kind), 0, object_kinds - 1);
+    bound(at, what("kind"), static_cast<unsigned>(region.kind), 0,
+          (version == 1 ? object_kinds_of_version_1 : object_kinds) - 1);
     bound(at + 1, what("degree"), region.degree, 0, format::max_degree);
     bound(at + 4, what("element size"), region.element_size, 1, format::max_element_size);
     bound(at + 8, what("base address"), region.base, 0, format::max_address);
@@ -39,6 +40,24 @@ void check_counts(const Origin& origin, std::uint64_t regions, std::uint64_t lau
     bound(origin + 24, "regions", regions, 1, format::max_regions);
     bound(origin + 28, "launches", launches, 1, format::max_launches);
     bound(origin + 32, "warps per launch", warps, 1, format::max_warps_per_launch);
+}
+
+void check_kernels(const Origin& origin, std::uint64_t kernels, std::uint64_t warps) {
+    bound(origin + 40, "kernels per launch", kernels, 1, format::max_kernels_per_launch);
+    if (warps % kernels != 0)
+        refuse(origin + 40, "kernels per launch", fmt::format("a divisor of {} warps per launch", warps),
+               fmt::format("{}", kernels), recapture);
+}
+
+/// The lowest version that can say what the header says.
+std::uint32_t version_of(const Header& header) {
+    const Provenance none;
+    const bool plain = header.kernels_per_launch == 1 && header.provenance.execution == none.execution &&
+                       header.provenance.order == none.order &&
+                       std::all_of(header.regions.begin(), header.regions.end(), [](const Region& r) {
+                           return static_cast<unsigned>(r.kind) < object_kinds_of_version_1;
+                       });
+    return plain ? 1 : 2;
 }
 
 void check_links(const Header& header, unsigned self) {
@@ -62,25 +81,27 @@ void check_links(const Header& header, unsigned self) {
 Bytes encode_header(const Header& header) {
     const Origin origin{"trace header to be written"};
     check_counts(origin, header.regions.size(), header.launches.size(), header.warps_per_launch);
-    const std::string provenance = provenance_to_json(header.provenance);
+    check_kernels(origin, header.kernels_per_launch, header.warps_per_launch);
+    const std::uint32_t version = version_of(header);
+    const std::string provenance = provenance_to_json(header.provenance, version);
     bound(origin, "bytes of provenance", provenance.size(), 1, format::max_provenance_bytes);
 
     Bytes out;
     append(out, format::file_magic);
-    append(out, format::version);
+    append(out, version);
     append(out, std::uint32_t{0});  // reserved
     append(out, std::uint64_t{0});  // size of the head, filled in below
     append(out, static_cast<std::uint32_t>(header.regions.size()));
     append(out, static_cast<std::uint32_t>(header.launches.size()));
     append(out, header.warps_per_launch);
     append(out, static_cast<std::uint32_t>(provenance.size()));
-    append(out, std::uint64_t{0});  // reserved
+    append(out, std::uint64_t{version == 1 ? 0 : header.kernels_per_launch});
     for (const std::uint32_t launch : header.launches) append(out, launch);
 
     Bytes tables;
     for (unsigned i = 0; i < header.regions.size(); ++i) {
         const Region& region = header.regions[i];
-        check_region(region, i, origin);
+        check_region(region, i, version, origin);
         check_links(header, i);
         const EncodedLinks links = encode_links(region, i);
         append(out, static_cast<std::uint8_t>(region.kind));
@@ -115,11 +136,13 @@ std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t fi
         refuse(origin + 8, "format version", fmt::format("at most {}", format::version), fmt::format("{}", version),
                fmt::format("this raycache reads version {}: install a newer one to read version {}", format::version,
                            version));
-    if (version == 0) refuse(origin + 8, "format version", "1", "0", recapture);
+    if (version == 0) refuse(origin + 8, "format version", fmt::format("1 to {}", format::version), "0", recapture);
     if (const auto reserved = load<std::uint32_t>(front.data() + 12); reserved != 0)
         refuse(origin + 12, "reserved bits", "0", fmt::format("{:#010x}", reserved), recapture);
-    if (const auto reserved = load<std::uint64_t>(front.data() + 40); reserved != 0)
+    if (const auto reserved = load<std::uint64_t>(front.data() + 40); version == 1 && reserved != 0)
         refuse(origin + 40, "reserved bits", "0", hex64(reserved), recapture);
+    if (const auto reserved = load<std::uint32_t>(front.data() + 44); reserved != 0)
+        refuse(origin + 44, "reserved bits", "0", fmt::format("{:#010x}", reserved), recapture);
     const auto size = load<std::uint64_t>(front.data() + 16);
     bound(origin + 16, "size of the head", size, fixed_header_bytes + format::checksum_bytes, file_bytes);
     return size;
@@ -128,10 +151,13 @@ std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t fi
 Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
     check_sealed(head, origin, "head", recapture);
     const std::uint8_t* p = head.data();
-    const auto regions = load<std::uint32_t>(p + 24), launches = load<std::uint32_t>(p + 28),
-               warps = load<std::uint32_t>(p + 32), text = load<std::uint32_t>(p + 36);
+    const auto version = load<std::uint32_t>(p + 8), regions = load<std::uint32_t>(p + 24),
+               launches = load<std::uint32_t>(p + 28), warps = load<std::uint32_t>(p + 32),
+               text = load<std::uint32_t>(p + 36);
     check_counts(origin, regions, launches, warps);
     bound(origin + 36, "bytes of provenance", text, 1, format::max_provenance_bytes);
+    const std::uint32_t kernels = version == 1 ? 1 : load<std::uint32_t>(p + 40);
+    check_kernels(origin, kernels, warps);
     const std::uint64_t table = fixed_header_bytes + std::uint64_t{4} * launches;
     const std::uint64_t provenance = table + std::uint64_t{format::region_bytes} * regions;
     const std::uint64_t end = head.size() - format::checksum_bytes;
@@ -141,10 +167,11 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
 
     Header header;
     header.warps_per_launch = warps;
+    header.kernels_per_launch = kernels;
     for (std::uint32_t i = 0; i < launches; ++i)
         header.launches.push_back(load<std::uint32_t>(p + fixed_header_bytes + 4 * std::size_t{i}));
     header.provenance =
-        provenance_from_json({reinterpret_cast<const char*>(p + provenance), text}, origin + provenance);
+        provenance_from_json({reinterpret_cast<const char*>(p + provenance), text}, version, origin + provenance);
     for (unsigned i = 0; i < regions; ++i) {
         const std::uint64_t at = table + format::region_bytes * i;
         const std::uint8_t* entry = p + at;
@@ -155,7 +182,7 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
                                   load<std::uint32_t>(entry + 20),
                                   entry[1],
                                   {}});
-        check_region(header.regions.back(), i, origin + at);
+        check_region(header.regions.back(), i, version, origin + at);
         bound(origin + at + 2, fmt::format("link prediction of region {}", i), entry[2], 0, link_predictions - 1);
         if (entry[3] != 0) refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
     }

@@ -12,7 +12,7 @@ using nlohmann::json;
 
 /// Calls visit(key, member) for every member that is stored under its own name.
 template <class P, class Visit>
-void each_member(P& provenance, Visit visit) {
+void each_member(P& provenance, std::uint32_t version, Visit visit) {
     visit("program", provenance.program);
     visit("command", provenance.command);
     visit("scene", provenance.scene);
@@ -27,8 +27,10 @@ void each_member(P& provenance, Visit visit) {
     visit("width", provenance.width);
     visit("height", provenance.height);
     visit("bounces", provenance.bounces);
+    if (version < 2) return;
+    visit("execution", provenance.execution);
+    visit("order", provenance.order);
 }
-constexpr std::size_t members = 15;  // those and scene_hash
 
 [[noreturn]] void wrong(const Origin& origin, const std::string& what, const char* expected, const std::string& found) {
     refuse(origin, "provenance: " + what, expected, found, recapture);
@@ -55,9 +57,9 @@ void read(const json& value, const char* key, Unsigned& out, const Origin& origi
 
 }  // namespace
 
-std::string provenance_to_json(const Provenance& provenance) {
+std::string provenance_to_json(const Provenance& provenance, std::uint32_t version) {
     json object;
-    each_member(provenance, [&](const char* key, const auto& member) { object[key] = member; });
+    each_member(provenance, version, [&](const char* key, const auto& member) { object[key] = member; });
     // A string: a JSON number loses the low bits of 64 in many readers.
     object["scene_hash"] = hex64(provenance.scene_hash);
     try {
@@ -68,19 +70,23 @@ std::string provenance_to_json(const Provenance& provenance) {
     }
 }
 
-Provenance provenance_from_json(std::string_view text, const Origin& origin) {
+Provenance provenance_from_json(std::string_view text, std::uint32_t version, const Origin& origin) {
     const json object = json::parse(text, nullptr, false);
     if (!object.is_object()) wrong(origin, "text", "a JSON object", "something else");
     Provenance provenance;
-    each_member(provenance,
-                [&](const char* key, auto& member) { read(find(object, key, origin), key, member, origin); });
+    std::size_t members = 1;  // scene_hash
+    each_member(provenance, version, [&](const char* key, auto& member) {
+        read(find(object, key, origin), key, member, origin);
+        ++members;
+    });
     std::string hash;
     read(find(object, "scene_hash", origin), "scene_hash", hash, origin);
     const char* end = hash.data() + hash.size();
     if (hash.size() != 18 || !hash.starts_with("0x") ||
         std::from_chars(hash.data() + 2, end, provenance.scene_hash, 16).ptr != end)
         wrong(origin, "scene_hash", "0x and 16 hexadecimal digits", "another string");
-    if (object.size() != members) wrong(origin, "keys", "15", fmt::format("{}", object.size()));
+    if (object.size() != members)
+        wrong(origin, "keys", fmt::format("{}", members).c_str(), fmt::format("{}", object.size()));
     return provenance;
 }
 

@@ -9,7 +9,8 @@
 
 namespace raycache::traces {
 
-std::string provenance_to_json(const Provenance&);
-Provenance provenance_from_json(std::string_view, const Origin&);
+/// Version 1 has no execution and order: they are those of a megakernel.
+std::string provenance_to_json(const Provenance&, std::uint32_t version);
+Provenance provenance_from_json(std::string_view, std::uint32_t version, const Origin&);
 
 }  // namespace raycache::traces

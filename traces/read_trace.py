@@ -39,10 +39,13 @@ def check_sealed(whole, what):
 class Trace:
     def __init__(self, path):
         self.file = open(path, "rb").read()
-        magic, version, reserved, size, regions, launches, self.warps_per_launch, text, reserved2 = struct.unpack_from(
-            "<8sIIQIIIIQ", self.file)
-        require(magic == b"RCTRACE\x1a" and version == 1, "no trace of version 1")
-        require(reserved == 0 and reserved2 == 0, "reserved bits set")
+        magic, version, reserved, size, regions, launches, self.warps_per_launch, text, kernels, reserved2 = (
+            struct.unpack_from("<8sIIQIIIIII", self.file))
+        require(magic == b"RCTRACE\x1a" and version in (1, 2), "no trace of version 1 or 2")
+        require(reserved == 0 and reserved2 == 0 and (version == 2 or kernels == 0), "reserved bits set")
+        self.kernels_per_launch = kernels if version == 2 else 1
+        require(kernels > 0 or version == 1, "no kernel")
+        require(self.warps_per_launch % self.kernels_per_launch == 0, "kernels of unequal size")
         check_sealed(self.file[:size], "head")
         self.launches = list(struct.unpack_from(f"<{launches}I", self.file, 48))
         entries = 48 + 4 * launches
@@ -55,6 +58,7 @@ class Trace:
             region = dict(zip(names, struct.unpack_from("<BBBBIQIIQQ", self.file, entries + 40 * i)))
             stored = self.file[at:at + region["link_bytes"]]
             require(xxhash.xxh3_64_intdigest(stored) == region["link_checksum"], f"links of region {i}: wrong checksum")
+            require(region["kind"] < (3 if version == 1 else 10), "unknown kind of object")
             region["links"] = self.links(region, i, stored)
             self.regions.append(region)
             at += region["link_bytes"]
@@ -197,7 +201,7 @@ class Block:
 def dump(trace):
     yield "provenance " + trace.provenance
     yield "launches " + " ".join(map(str, trace.launches))
-    yield f"warps_per_launch {trace.warps_per_launch}"
+    yield f"warps_per_launch {trace.warps_per_launch} kernels_per_launch {trace.kernels_per_launch}"
     for i, r in enumerate(trace.regions):
         links = xxhash.xxh3_64_hexdigest(np.array(r["links"], "<u4").tobytes())
         yield (f"region {i} kind {r['kind']} base {r['base']:#x} element_size {r['element_size']} stride {r['stride']} "

@@ -19,18 +19,6 @@ const char* name_of(traces::RayType ray) {
     return "?";
 }
 
-const char* name_of(traces::ObjectKind kind) {
-    switch (kind) {
-        case traces::ObjectKind::node:
-            return "node";
-        case traces::ObjectKind::triangle:
-            return "triangle";
-        case traces::ObjectKind::texel:
-            return "texel";
-    }
-    return "?";
-}
-
 void append_dinero(const SectorAccess& a, std::string& out) {
     fmt::format_to(std::back_inserter(out), "0 {:x}\n", a.address);
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "cachesim/cache/fill.hpp"
@@ -19,6 +21,8 @@
 #include "cachesim/replay/miss_window.hpp"
 #include "cachesim/replay/request_sink.hpp"
 #include "cachesim/replay/tally.hpp"
+#include "cachesim/replay/write_back.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::cachesim {
 
@@ -27,7 +31,9 @@ using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
 class Hierarchy {
 public:
     Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions, InstructionSet instructions)
-        : l1_per_sm_(gpu.l1_per_sm),
+        : gpu_(gpu),
+          instructions_(instructions),
+          l1_per_sm_(gpu.l1_per_sm),
           ids_(regions, gpu.l1().line_bytes),
           coalesce_(regions, LineShape(gpu.l1().line_bytes, gpu.l1().sector_bytes), instructions),
           count_loads_(regions, gpu.front_end, LineShape(gpu.l1().line_bytes, gpu.l1().sector_bytes)),
@@ -41,11 +47,18 @@ public:
             levels_.push_back(make_level(gpu.levels[level], caches, ids_, instructions));
             fills_.emplace_back(gpu.levels[level]);
         }
-        for (const traces::Region& region : regions) kinds_.push_back(region.kind);
+        for (const traces::Region& region : regions) {
+            kinds_.push_back(region.kind);
+            element_bytes_.push_back(region.element_size);
+            writes_ |= traces::is_write(region.kind);
+            plain_ &= region.kind < traces::ObjectKind::ray_state;
+        }
+        if (writes_) write_back_.emplace(ids_);
     }
 
     /// From now on the sink, which must outlive this object, hears of the caches that it wants.
     void observe(RequestSink& sink) {
+        if (!plain_) throw Error("trace of a wavefront: expected one of a megakernel, whose requests can be followed");
         sink_ = &sink;
         accesses_.resize(requests_.size());
         missing_for_.resize(misses_.rounds());
@@ -66,6 +79,10 @@ public:
         like.region = record.region;
         like.cache = static_cast<std::uint8_t>(l1);
         const unsigned lanes = record.lanes();
+        if (!plain_ && kinds_[record.region] >= traces::ObjectKind::ray_state_write) {
+            pass_l1(record, elements, like, round);
+            return;
+        }
         const Coalesced made = coalesce_(elements, lanes, like, &requests_[pending_]);
         tally_.add_access(like.group, lanes, made.sectors,
                           count_loads_(record.region, record.mask, elements, made.sectors));
@@ -94,11 +111,21 @@ public:
     /// All SMs have run all rounds: the shared level's turn.
     void end_window() {
         for (std::size_t round = 0; round < misses_.rounds(); ++round) {
-            look_up(shared_, misses_.take(round), 0, 0, missing_for_.empty() ? accesses_ : missing_for_[round]);
+            const std::span<Request> requests = misses_.take(round);
+            if (writes_)
+                look_up_written(requests);
+            else
+                look_up(shared_, requests, 0, 0, missing_for_.empty() ? accesses_ : missing_for_[round]);
             if (sink_) missing_for_[round].clear();
         }
         if (sink_) sink_->end_window();
         issued_ = 0;
+    }
+
+    /// All windows have ended, and so has a kernel: the next finds nothing in the L1s of a GPU, all in what is below.
+    /// Caches of a CPU (three levels) keep what they have.
+    void end_kernel() {
+        if (shared_ == 1) levels_[0] = make_level(gpu_.levels[0], gpu_.sms * gpu_.l1_per_sm, ids_, instructions_);
     }
 
     /// The counts of all windows that have ended.
@@ -133,6 +160,47 @@ private:
         tally_.add_fetched(level, requests);
     }
 
+    /// Writes go through to the shared level and leave no trace above; what a sort moves goes past all levels.
+    void pass_l1(const traces::Record& record, const std::uint32_t* elements, const Request& like, std::size_t round) {
+        const unsigned lanes = record.lanes();
+        if (kinds_[record.region] == traces::ObjectKind::sort) {
+            const std::uint32_t sector = gpu_.l1().sector_bytes;
+            const auto sectors = (lanes * element_bytes_[record.region] + sector - 1) / sector;
+            tally_.add_access(like.group, lanes, sectors, {0, sectors});
+            tally_.add_passing(shared_, like.group, sectors);
+            return;
+        }
+        written_.resize(coalesce_.max_requests());
+        const Coalesced made = coalesce_(elements, lanes, like, written_.data());
+        tally_.add_access(like.group, lanes, made.sectors,
+                          count_loads_(record.region, record.mask, elements, made.sectors));
+        tally_.add_passing(shared_ - 1, like.group, made.sectors);
+        misses_.reserve(round);
+        for (std::size_t i = 0; i < made.requests; ++i) misses_.add(round, written_[i]);
+    }
+
+    /// The shared level of a launch that writes: a written sector is there afterwards without being read from DRAM, and
+    /// is written to DRAM once for each time that it was changed and then evicted (or was left at the end).
+    void look_up_written(std::span<Request> requests) {
+        asked_.clear();
+        for (const Request& request : requests) asked_.push_back(request.sectors);
+        levels_[shared_]->process(requests, 0);
+        std::size_t reads = 0;
+        for (std::size_t i = 0; i < requests.size(); ++i) {
+            Request& r = requests[i];
+            if (traces::is_write(kinds_[r.region])) {
+                tally_.add_fetched(shared_, r.group, write_back_->write(r, asked_[i]));
+            } else {
+                write_back_->read(r);
+                asked_[reads] = asked_[i];
+                requests[reads++] = r;
+            }
+        }
+        const auto read = requests.first(reads);
+        if (fills_[shared_].widens()) tally_.add_unasked(shared_, read, asked_);
+        tally_.add_fetched(shared_, read);
+    }
+
     void report(std::size_t level, std::span<const Request> answers, unsigned sm,
                 const std::vector<std::uint32_t>& accesses) const {
         for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -162,6 +230,8 @@ private:
         std::fill_n(accesses_.begin() + static_cast<std::ptrdiff_t>(pending_), requests, issued_++);
     }
 
+    Gpu gpu_;
+    InstructionSet instructions_;
     unsigned l1_per_sm_;
     LineIds ids_;
     Coalescer coalesce_;
@@ -170,6 +240,11 @@ private:
     std::vector<Fill> fills_;                     ///< of each of them
     std::size_t shared_;                          ///< the last of them: one cache for all SMs
     std::vector<traces::ObjectKind> kinds_;       ///< of each region
+    std::vector<std::uint32_t> element_bytes_;    ///< likewise
+    bool writes_ = false;                         ///< whether any region is written
+    bool plain_ = true;                           ///< all regions are those of a megakernel
+    std::optional<WriteBack> write_back_;         ///< where any is
+    std::vector<Request> written_;                ///< of one access
     Tally tally_;
     std::vector<Request> requests_;      ///< of one SM, not yet looked up
     std::vector<std::uint16_t> rounds_;  ///< of each of them

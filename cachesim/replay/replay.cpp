@@ -1,6 +1,7 @@
 #include "cachesim/replay/replay.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "cachesim/replay/hierarchy.hpp"
@@ -10,26 +11,32 @@
 namespace raycache::cachesim {
 
 struct Replay::Impl {
-    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample,
+    Impl(const Gpu& all_gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample,
          InstructionSet instructions)
-        : warps_per_cta(checked(gpu).warps_per_cta),
+        : gpu(checked(all_gpu)),
+          warps_per_cta(gpu.warps_per_cta),
           cta_slots(std::max(1u, gpu.warps_per_sm / gpu.warps_per_cta)),
           regions(checked(all_regions)),
           sample_index(sample),
           sms(gpu.sms),
           memory(gpu, regions, instructions),
-          schedule(gpu, cta_slots, memory) {}
+          schedule(std::in_place, gpu, cta_slots, memory) {}
 
     void place_cta();
+    void run_all() {
+        if (!cta.empty()) place_cta();
+        while (schedule->next_free()) schedule->resume();
+    }
 
+    const Gpu gpu;
     const unsigned warps_per_cta, cta_slots;  ///< slots of each SM
     const std::vector<traces::Region> regions;
     const std::uint32_t sample_index;
     const unsigned sms;
     Hierarchy memory;
-    Schedule schedule;
-    std::vector<WarpPointer> cta;  ///< warps of the CTA that is being pushed
-    std::uint64_t placed = 0;      ///< CTAs placed so far
+    std::optional<Schedule> schedule;  ///< of this kernel
+    std::vector<WarpPointer> cta;      ///< warps of the CTA that is being pushed
+    std::uint64_t placed = 0;          ///< CTAs of this kernel placed so far
 };
 
 /// Gives the collected CTA a place: rotating while there is room, then wherever a slot frees first.
@@ -40,11 +47,11 @@ void Replay::Impl::place_cta() {
         for (const WarpPointer& warp : cta)
             for (const traces::Record& record : warp->records) memory.add_rays(record);
     } else if (placed < std::uint64_t{cta_slots} * sms) {
-        schedule.place(placed % sms, static_cast<unsigned>(placed / sms), cta);
+        schedule->place(placed % sms, static_cast<unsigned>(placed / sms), cta);
         ++placed;
-    } else if (const auto free = schedule.next_free()) {
-        schedule.place(free->sm, free->slot, cta);
-        schedule.resume();
+    } else if (const auto free = schedule->next_free()) {
+        schedule->place(free->sm, free->slot, cta);
+        schedule->resume();
         ++placed;
     }
     cta.clear();
@@ -64,9 +71,15 @@ void Replay::push(std::shared_ptr<const traces::WarpTrace> warp) {
     if (impl_->cta.size() == impl_->warps_per_cta) impl_->place_cta();
 }
 
+void Replay::end_kernel() {
+    impl_->run_all();
+    impl_->memory.end_kernel();
+    impl_->schedule.emplace(impl_->gpu, impl_->cta_slots, impl_->memory);
+    impl_->placed = 0;
+}
+
 LaunchStatistics Replay::finish() {
-    if (!impl_->cta.empty()) impl_->place_cta();
-    while (impl_->schedule.next_free()) impl_->schedule.resume();
+    impl_->run_all();
     return {impl_->sample_index, impl_->memory.groups()};
 }
 

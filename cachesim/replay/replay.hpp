@@ -50,6 +50,10 @@ public:
     /// record contradicts the regions.
     void push(std::shared_ptr<const traces::WarpTrace>);
 
+    /// The warps pushed so far are a kernel, and the next begins when they have ended, on SM 0: L1s empty, what is
+    /// below them kept (of a CPU, with three levels, all is kept).
+    void end_kernel();
+
     /// Runs what is left and returns the counts. Call once.
     LaunchStatistics finish();
 

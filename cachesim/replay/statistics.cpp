@@ -16,6 +16,8 @@ Counters& Counters::operator+=(const Counters& other) {
     l3_sectors += other.l3_sectors;
     l3_hits += other.l3_hits;
     dram_sectors += other.dram_sectors;
+    written_sectors += other.written_sectors;
+    sort_sectors += other.sort_sectors;
     return *this;
 }
 

@@ -25,7 +25,10 @@ struct Counters {
     std::uint64_t l2_hits = 0;
     std::uint64_t l3_sectors = 0;  ///< sectors asked of L3, likewise; 0 where there is none
     std::uint64_t l3_hits = 0;
-    std::uint64_t dram_sectors = 0;  ///< sectors read from DRAM, those fetched beside the missing ones included
+    /// Sectors read from DRAM, those fetched beside the missing ones included. Of a wavefront also those written to it,
+    /// and those that sorts read and write.
+    std::uint64_t dram_sectors = 0;
+    std::uint64_t written_sectors = 0, sort_sectors = 0;  ///< of these
 
     /// Requests of single loads that L1 answers: only the first request for a sector in a warp access can miss.
     std::uint64_t l1_request_hits() const { return l1_requests - (sectors - l1_hits); }

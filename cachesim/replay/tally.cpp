@@ -22,6 +22,8 @@ Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t 
         asked = sums.fetched[level];
     }
     c.dram_sectors = asked;
+    if (traces::is_write(kind)) c.written_sectors = asked;
+    if (kind == traces::ObjectKind::sort) c.sort_sectors = asked;
     return c;
 }
 

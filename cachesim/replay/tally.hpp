@@ -55,8 +55,15 @@ public:
 
     /// What level number `level`, from 0, fetches from below.
     void add_fetched(std::size_t level, std::span<const Request> fetched) {
-        for (const Request& r : fetched)
-            sums_[r.group].fetched[level] += static_cast<unsigned>(std::popcount(r.sectors));
+        for (const Request& r : fetched) add_fetched(level, r.group, r.sectors);
+    }
+    void add_fetched(std::size_t level, std::uint16_t group, std::uint32_t sectors) {
+        sums_[group].fetched[level] += static_cast<unsigned>(std::popcount(sectors));
+    }
+
+    /// Sectors that pass every level down to number `level`, from 0, on their way to DRAM.
+    void add_passing(std::size_t level, std::uint16_t group, unsigned sectors) {
+        for (std::size_t l = 0; l <= level; ++l) sums_[group].fetched[l] += sectors;
     }
 
     /// Of what a level fetched for requests of these sectors, that which nobody had asked for.

@@ -40,6 +40,10 @@ private:
 /// The last columns are there only if some GPU has an L3.
 constexpr const char* l3_header =
     ",l3_sectors,l3_hits,l3_hit_rate,l3_hit_rate_ci95,l3_bytes_per_ray,l3_bytes_per_ray_ci95,l3_locality";
+/// Likewise, if some trace is of a wavefront.
+constexpr const char* wavefront_header =
+    ",written_sectors,sort_sectors,written_bytes_per_ray,written_bytes_per_ray_ci95,sort_bytes_per_ray,"
+    "sort_bytes_per_ray_ci95";
 constexpr const char* header =
     "scene,strategy,sequence,parameters,thread_map,gpu,group,spp,samples,total_rays,steps,lane_accesses,warp_accesses,"
     "loads,l1_requests,sectors,l1_hits,l2_sectors,l2_hits,dram_sectors,rays,rays_ci95,steps_per_ray,steps_per_ray_ci95,"
@@ -55,6 +59,7 @@ constexpr const char* header =
 std::string to_csv(const Report& report) {
     std::string csv = header;
     if (report.has_l3()) csv += l3_header;
+    if (report.has_wavefront()) csv += wavefront_header;
     csv += '\n';
     for (const Row& row : report.rows) {
         Line line;
@@ -86,6 +91,12 @@ std::string to_csv(const Report& report) {
             line.estimate(row.l3_hit_rate);
             line.estimate(row.l3_bytes_per_ray);
             line.number(row.levels == 3 ? f.l3_locality : none);
+        }
+        if (report.has_wavefront()) {
+            line.number(c.written_sectors);
+            line.number(c.sort_sectors);
+            line.estimate(row.written_bytes_per_ray);
+            line.estimate(row.sort_bytes_per_ray);
         }
         csv += line.end();
     }

@@ -37,7 +37,7 @@ Json level(const LevelFindings& found) {
     constexpr const char* rays[] = {"camera", "bounce", "shadow"};
     Json json{{"all", counts(found.all())}};
     Json& by_object = json["by_object"] = Json::object();
-    for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
+    for (unsigned kind = 0; kind < traces::object_kinds_of_version_1; ++kind)
         if (found.by_kind[kind].lookups) by_object[kinds[kind]] = counts(found.by_kind[kind]);
     Json& by_ray = json["by_ray"] = Json::array();
     for (std::size_t i = 0; i < found.by_ray.size(); ++i) {

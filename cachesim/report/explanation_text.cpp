@@ -184,7 +184,7 @@ std::string place_table(const Explanation& e) {
     };
     row("all", &LevelFindings::all);
     constexpr const char* kinds[] = {"nodes", "triangles", "texels"};
-    for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
+    for (unsigned kind = 0; kind < traces::object_kinds_of_version_1; ++kind)
         row(kinds[kind], [kind](const LevelFindings& f) { return f.by_kind[kind]; });
     constexpr const char* rays[] = {"camera", "bounce", "shadow"};
     for (unsigned ray = 0; ray < traces::ray_types; ++ray)

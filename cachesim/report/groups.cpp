@@ -9,8 +9,7 @@ namespace raycache::cachesim {
 namespace {
 
 constexpr const char* ray_names[] = {"camera", "bounce", "shadow"};
-constexpr const char* kind_names[] = {"node", "triangle", "texel"};
-static_assert(std::size(ray_names) == traces::ray_types && std::size(kind_names) == traces::object_kinds);
+static_assert(std::size(ray_names) == traces::ray_types);
 
 /// Groups by an ordered key; every group gets one entry per launch.
 class Groups {
@@ -44,7 +43,7 @@ void add_kinds(Groups& groups, const LaunchStatistics& launch, std::size_t i) {
     for (const RayGroup& group : launch.groups)
         for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
             if (group.by_kind[kind].warp_accesses) {
-                Counters& sum = groups.at(kind, kind_names[kind], i);
+                Counters& sum = groups.at(kind, traces::name_of(static_cast<traces::ObjectKind>(kind)), i);
                 sum += group.by_kind[kind];
                 sum.rays = rays;
             }

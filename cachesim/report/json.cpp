@@ -30,6 +30,8 @@ Json counters(const Counters& c, bool l3) {
               {"l2_hits", c.l2_hits}};
     if (l3) json.update({{"l3_sectors", c.l3_sectors}, {"l3_hits", c.l3_hits}});
     json["dram_sectors"] = c.dram_sectors;
+    if (c.written_sectors != 0) json["written_sectors"] = c.written_sectors;
+    if (c.sort_sectors != 0) json["sort_sectors"] = c.sort_sectors;
     return json;
 }
 
@@ -68,6 +70,9 @@ Json row_json(const Row& row, bool l3) {
               {"l2_bytes_ratio", estimate(row.l2_bytes_ratio)},
               {"dram_bytes_ratio", estimate(row.dram_bytes_ratio)},
               {"factors", factors(row.factors, l3)}};
+    if (row.written_bytes_per_ray)
+        json.update({{"written_bytes_per_ray", estimate(row.written_bytes_per_ray)},
+                     {"sort_bytes_per_ray", estimate(row.sort_bytes_per_ray)}});
     if (l3)
         json.update({{"l3_hit_rate", estimate(row.l3_hit_rate)}, {"l3_bytes_per_ray", estimate(row.l3_bytes_per_ray)}});
     return json;

@@ -67,6 +67,11 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     row.l2_hit_rate = ratio_of_totals(draft.sums(&Counters::l2_hits, &Counters::l2_sectors));
     row.l2_bytes_per_ray = ratio_of_totals(draft.l2_bytes());
     row.dram_bytes_per_ray = ratio_of_totals(draft.dram_bytes());
+    if (row.totals.written_sectors != 0 || row.totals.sort_sectors != 0) {
+        const double bytes = series.sector_bytes;
+        row.written_bytes_per_ray = ratio_of_totals(draft.sums(&Counters::written_sectors, &Counters::rays, bytes));
+        row.sort_bytes_per_ray = ratio_of_totals(draft.sums(&Counters::sort_sectors, &Counters::rays, bytes));
+    }
     if (row.levels < 3) return draft;
     row.l3_hit_rate = ratio_of_totals(draft.sums(&Counters::l3_hits, &Counters::l3_sectors));
     row.l3_bytes_per_ray = ratio_of_totals(draft.l3_bytes());
@@ -135,6 +140,10 @@ void compare(Draft& draft, const std::vector<Draft>& drafts, const std::string& 
 
 bool Report::has_l3() const {
     return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.levels == 3; });
+}
+
+bool Report::has_wavefront() const {
+    return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.written_bytes_per_ray.has_value(); });
 }
 
 Report make_report(const std::vector<Series>& all_series, const std::string& baseline, GroupBy by) {

@@ -55,6 +55,8 @@ struct Row {
     /// As profilers count: every load asks for its sectors, so most requests of a visit hit (LoadCounter).
     Estimate l1_request_hit_rate;
     std::optional<Estimate> l3_hit_rate, l3_bytes_per_ray;  ///< bytes that L2 asks of L3; absent where there is no L3
+    /// Of dram_bytes_per_ray: what kernels write, and what sorts move. Absent where no trace is of a wavefront.
+    std::optional<Estimate> written_bytes_per_ray, sort_bytes_per_ray;
     /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline
     /// itself or where there is none or its sample indices differ (a note says so).
     std::optional<Estimate> l2_bytes_ratio, dram_bytes_ratio;
@@ -69,6 +71,8 @@ struct Report {
 
     /// Whether any row's GPU has an L3: only then do tables show what concerns it.
     bool has_l3() const;
+    /// Likewise, whether any row writes to DRAM or sorts.
+    bool has_wavefront() const;
 };
 
 /// Throws UsageError if `baseline` was given by the user but is in no series.

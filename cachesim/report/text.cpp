@@ -93,6 +93,10 @@ std::string main_table(const Report& report, std::vector<Column> columns) {
     figure("L2->L1 B/ray", [](const Row& r) { return with_interval(r.l2_bytes_per_ray); });
     if (report.has_l3()) figure("L3->L2 B/ray", [](const Row& r) { return with_interval(r.l3_bytes_per_ray); });
     figure("DRAM B/ray", [](const Row& r) { return with_interval(r.dram_bytes_per_ray); });
+    if (report.has_wavefront()) {
+        figure("written", [](const Row& r) { return with_interval(r.written_bytes_per_ray); });
+        figure("sort", [](const Row& r) { return with_interval(r.sort_bytes_per_ray); });
+    }
     if (!report.baseline.empty())
         figure("DRAM ratio", [&](const Row& r) {
             return r.strategy == report.baseline ? "baseline" : with_interval(r.dram_bytes_ratio);
@@ -140,6 +144,10 @@ std::string to_text(const Report& report) {
         report.has_l3() ? "L1 %, L2 %, L3 %" : "L1 %, L2 %");
     text +=
         report.baseline.empty() ? ".\n" : fmt::format("; DRAM ratio: DRAM B/ray over that of {}.\n", report.baseline);
+    if (report.has_wavefront())
+        text +=
+            "Wavefronts: DRAM B/ray includes what kernels write to it and what sorting rays reads and writes; both are "
+            "given apart.\n";
     text += factor_table(report, columns);
     if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';

@@ -11,12 +11,23 @@
 
 using namespace raycache::traces;
 
+namespace {
+
+/// As it stands in the file: of version 2 if that of version 1 would not say all.
+std::string provenance_json(const Header& header) {
+    const bool wavefront = header.provenance.execution != Provenance{}.execution;
+    return provenance_to_json(header.provenance, wavefront ? 2 : 1);
+}
+
+}  // namespace
+
 std::string dump_trace(const std::string& path) {
     const Reader reader(path);
     const Header& header = reader.header();
-    std::string text = "provenance " + provenance_to_json(header.provenance) + "\nlaunches";
+    std::string text = "provenance " + provenance_json(header) + "\nlaunches";
     for (const auto launch : header.launches) text += fmt::format(" {}", launch);
-    text += fmt::format("\nwarps_per_launch {}\n", header.warps_per_launch);
+    text += fmt::format("\nwarps_per_launch {} kernels_per_launch {}\n", header.warps_per_launch,
+                        header.kernels_per_launch);
     for (std::size_t i = 0; i < header.regions.size(); ++i) {
         const Region& r = header.regions[i];
         Bytes links;

@@ -62,6 +62,10 @@ std::vector<Good> good_files() {
          [] {
              return noise({30, 0, 0, 1, 3});
          }},
+        {"wavefront",
+         [] {
+             return wavefront_buffers({5, 0, 0, 2, 2});
+         }},
     };
 }
 
@@ -95,10 +99,10 @@ std::vector<Bad> bad_files() {
         {"empty", [](Bytes& b) { b.clear(); }, "offset 0: magic: expected RCTRACE, found an empty file"},
         {"wrong-magic", [](Bytes& b) { b[0] = 'X'; },
          "offset 0: magic: expected RCTRACE, found other bytes; this is no raycache trace"},
-        {"newer-version", [](Bytes& b) { b[8] = 2; },
-         "offset 8: format version: expected at most 1, found 2; this raycache reads version 1: install a newer one to "
-         "read version 2"},
-        {"version-zero", head(8, 0), "offset 8: format version: expected 1, found 0"},
+        {"newer-version", [](Bytes& b) { b[8] = 3; },
+         "offset 8: format version: expected at most 2, found 3; this raycache reads version 2: install a newer one to "
+         "read version 3"},
+        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 2, found 0"},
         {"reserved-bit", head(12, 1), "offset 12: reserved bits: expected 0, found 0x00000001"},
         {"region-reserved-bit", head(region0 + 3, 1), "offset 55: reserved bits: expected 0, found 0x01"},
         {"flipped-head", [](Bytes& b) { b[140] ^= 1; }, "offset 0: checksum of the head"},
@@ -109,6 +113,12 @@ std::vector<Bad> bad_files() {
         {"link-out-of-range", [](Bytes& b) { store(b.data() + region0 + 40 + 20, 1u), reseal_head(b); },
          "link 1 of element 0 of region 0: expected an element of the trace, found element 1 of region 1"},
         {"unknown-kind", head(region0, 3), "kind of region 0: expected 0 to 2, found 3"},
+        {"kernels-in-version-1", head(40, 1), "offset 40: reserved bits: expected 0, found 0x0000000000000001"},
+        {"no-kernel", head(8, 2), "offset 40: kernels per launch: expected 1 to 1024, found 0"},
+        {"unequal-kernels", [](Bytes& b) { b[8] = 2, b[40] = 2, reseal_head(b); },
+         "offset 40: kernels per launch: expected a divisor of 1 warps per launch, found 2"},
+        {"order-missing", [](Bytes& b) { b[8] = 2, b[40] = 1, reseal_head(b); },
+         "provenance: key \"execution\": expected a value, found none"},
         {"flipped-block", [](Bytes& b) { b[head_size(b) + 120] ^= 1; }, "checksum of the block"},
         {"huge-stream", [](Bytes& b) { store(b.data() + head_size(b) + 56, ~0u), reseal_block(b); },
          "raw stream size of the block: expected at most"},

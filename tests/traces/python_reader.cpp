@@ -46,6 +46,8 @@ TEST_CASE("the Python reader sees what the C++ reader sees in random traces") {
         }
         write_sample(noise({seed, 0, 0, 2, 3}), path);
         check_same(path);
+        write_sample(wavefront_buffers({seed, 0, 0, 2, 4}), path);
+        check_same(path);
         write_sample(texel_reads({seed, 0, 0, 1, 2}), path);
         check_same(path);
     }

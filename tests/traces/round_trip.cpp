@@ -3,6 +3,7 @@
 
 #include "files.hpp"
 #include "samples.hpp"
+#include "traces/bytes.hpp"
 #include "traces/reader.hpp"
 #include "traces/verify.hpp"
 #include "traces/writer.hpp"
@@ -44,6 +45,26 @@ TEST_CASE("walks through trees of every degree come back exactly") {
 
 TEST_CASE("records without any sense come back exactly") {
     for (std::uint64_t seed = 1; seed <= 150; ++seed) check_round_trip(noise({seed, 2, 0, 2, 3}), 1 + seed % 3);
+}
+
+TEST_CASE("the kernels and buffers of a wavefront come back exactly") {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) check_round_trip(wavefront_buffers({seed, 0, 0, 2, 4}), 3);
+}
+
+TEST_CASE("only a trace that needs version 2 is one") {
+    const TemporaryFolder folder;
+    const auto version = [&](const Sample& sample) {
+        write_sample(sample, folder / "sample.rct");
+        return load<std::uint32_t>(read_file(folder / "sample.rct").data() + 8);
+    };
+    Sample sample = texel_reads({});
+    CHECK(version(sample) == 1);
+    sample.header.regions[0].kind = ObjectKind::hit;
+    CHECK(version(sample) == 2);
+    sample = texel_reads({1, 0, 0, 1, 4});
+    sample.header.kernels_per_launch = 2;
+    CHECK(version(sample) == 2);
+    CHECK(version(wavefront_buffers({})) == 2);
 }
 
 TEST_CASE("texel reads come back exactly") { check_round_trip(texel_reads({}), 2); }

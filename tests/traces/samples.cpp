@@ -182,7 +182,7 @@ Sample noise(const Shape& shape) {
     Random random(shape.seed);
     Sample sample{header_of("noise", shape), {}};
     for (unsigned i = 0, count = 1 + random.below(6); i < count; ++i) {
-        Region region{static_cast<ObjectKind>(random.below(object_kinds)),
+        Region region{static_cast<ObjectKind>(random.below(object_kinds_of_version_1)),
                       std::uint64_t{i} << 32,
                       16,
                       16,
@@ -231,6 +231,35 @@ Sample texel_reads(const Shape& shape) {
                 warp.elements.push_back((100 + lane / 8 + random.below(radius)) * width + 8 * warp.warp + lane % 8 +
                                         random.below(radius));
         }
+    });
+    return sample;
+}
+
+Sample wavefront_buffers(const Shape& shape) {
+    Random random(shape.seed);
+    Sample sample{header_of("wavefront", shape), {}};
+    Header& header = sample.header;
+    header.provenance.execution = "wavefront";
+    header.provenance.order = "morton";
+    header.warps_per_launch = 2 * shape.warps;
+    header.kernels_per_launch = 2;
+    constexpr std::uint32_t slots = 300;
+    for (unsigned kind = 0; kind < object_kinds; ++kind) {
+        const std::uint64_t buffer = kind == 6 || kind == 7 || kind == 8 ? kind - 3 : kind;  // shares its addresses
+        header.regions.push_back({static_cast<ObjectKind>(kind), buffer << 32, 32, 32, slots, 0, {}});
+    }
+    Shape all = shape;
+    all.warps = header.warps_per_launch;
+    sample.warps = warps_of(all, [&](WarpTrace& warp) {
+        if (warp.warp % 3 == 2) return;  // no work left
+        const std::uint32_t mask = random.bits() | 1;
+        const auto access = [&](std::uint8_t region) {
+            add(warp, mask, region, RayType::bounce, 1);
+            for (int lane = std::popcount(mask); lane > 0; --lane) warp.elements.push_back(random.below(slots));
+        };
+        for (const std::uint8_t region : {9, 5, 3}) access(region);
+        add(warp, mask, ray_start, RayType::bounce, 1);
+        for (const std::uint8_t region : {0, 0, 1, 4, 6, 7, 8}) access(region);
     });
     return sample;
 }

@@ -47,6 +47,9 @@ Sample noise(const Shape&);
 /// Screen-space reads: texels around a pixel, in a region without links.
 Sample texel_reads(const Shape&);
 
+/// Two kernels of a wavefront per launch: all kinds of buffers, a sort, and warps without records.
+Sample wavefront_buffers(const Shape&);
+
 /// Writes all warps, `per_block` to a block.
 void write_sample(const Sample&, const std::string& path, std::size_t per_block = 2);
 

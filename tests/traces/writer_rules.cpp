@@ -147,6 +147,9 @@ TEST_CASE("headers that break the rules are refused before a file exists") {
     };
     CHECK_THAT(write([](Header& h) { h.regions.clear(); }), Contains("regions: expected 1 to 254, found 0"));
     CHECK_THAT(write([](Header& h) { h.launches.clear(); }), Contains("launches: expected 1"));
+    CHECK_THAT(write([](Header& h) { h.kernels_per_launch = 0; }), Contains("kernels per launch: expected 1 to 1024"));
+    CHECK_THAT(write([](Header& h) { h.kernels_per_launch = 2, h.warps_per_launch = 3; }),
+               Contains("kernels per launch: expected a divisor of 3 warps per launch, found 2"));
     CHECK_THAT(write([](Header& h) { h.warps_per_launch = 0; }), Contains("warps per launch: expected 1"));
     CHECK_THAT(write([](Header& h) { h.regions[0].base = 64; }), Contains("a multiple of 2 MiB"));
     CHECK_THAT(write([](Header& h) { h.regions[1].stride = 47; }), Contains("stride of region 1: expected 48"));

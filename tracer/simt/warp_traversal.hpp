@@ -65,7 +65,7 @@ private:
         /// Siblings of the nodes on the way here that have not been visited, hit or not: the height of the stack that
         /// the trace's symbols speak of.
         std::uint32_t height;
-        std::uint32_t last_symbol;  ///< its place; set wherever the lane may end
+        std::uint32_t last_symbol = 0;  ///< its place; set wherever the lane may end
     };
 
     void begin(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {

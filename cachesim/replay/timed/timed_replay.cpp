@@ -1,24 +1,42 @@
 #include "cachesim/replay/timed/timed_replay.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <utility>
 
 #include "cachesim/replay/launch_checks.hpp"
+#include "cachesim/replay/timed/streamed_traffic.hpp"
 #include "cachesim/replay/timed/timed_sm.hpp"
 
 namespace raycache::cachesim {
 
 struct TimedReplay::Impl {
     Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal)
-        : regions(checked(all_regions)), rules(checked_timed(gpu), regions, ideal), memory(gpu, ideal) {
+        : regions(checked(all_regions)),
+          rules(checked_timed(gpu), regions, ideal),
+          memory(gpu, ideal),
+          streamed(regions, gpu.l1().sector_bytes) {
         total.sample = sample;
-        for (std::uint32_t sm = 0; sm < gpu.sms; ++sm) sms.emplace_back(rules, static_cast<std::uint16_t>(sm));
+        make_sms();
         window = std::max<Cycle>(1, memory.shortest_answer());
     }
 
+    void make_sms() {
+        sms.clear();
+        for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm) sms.emplace_back(rules, static_cast<std::uint16_t>(sm));
+    }
     void place_cta();
     void run_window();
+    void run_all() {
+        if (!cta.empty()) place_cta();
+        while (!idle()) run_window();
+    }
+    Cycle last_end() const {
+        Cycle last = began;
+        for (const TimedSm& sm : sms) last = std::max(last, sm.last_end());
+        return last;
+    }
     bool idle() const {
         return memory.idle() && std::all_of(sms.begin(), sms.end(), [](const TimedSm& sm) { return sm.idle(); });
     }
@@ -33,8 +51,10 @@ struct TimedReplay::Impl {
     const std::vector<traces::Region> regions;
     const TimedRules rules;
     MemorySide memory;
+    StreamedTraffic streamed;
     std::deque<TimedSm> sms;
     Cycle window = 1, now = 0;
+    Cycle began = 0;  ///< the kernel
     std::vector<WarpPointer> cta;
     std::uint64_t placed = 0;
     std::vector<FreeSlot> free;  ///< earliest last
@@ -51,7 +71,7 @@ void TimedReplay::Impl::place_cta() {
                 if (!record.is_access()) total.rays += record.lanes();
     } else if (placed < at_first) {
         const std::uint64_t round = placed / sms.size();
-        sms[placed % sms.size()].place(static_cast<unsigned>(round), cta, round);
+        sms[placed % sms.size()].place(static_cast<unsigned>(round), cta, began + round);
         ++placed;
     } else {
         while (free.empty()) run_window();
@@ -87,25 +107,32 @@ TimedReplay::TimedReplay(TimedReplay&&) noexcept = default;
 
 void TimedReplay::push(std::shared_ptr<const traces::WarpTrace> warp) {
     check(*warp, impl_->regions);
-    impl_->cta.push_back(std::move(warp));
+    impl_->cta.push_back(impl_->streamed.take(std::move(warp)));
     if (impl_->cta.size() == impl_->rules.gpu.warps_per_cta) impl_->place_cta();
+}
+
+void TimedReplay::end_kernel() {
+    Impl& i = *impl_;
+    i.run_all();
+    i.began = i.now = std::max(i.now, i.last_end() + i.rules.timing.launch_cycles);
+    for (const TimedSm& sm : i.sms) i.total += sm.statistics;
+    i.make_sms();
+    i.placed = 0;
+    i.free.clear();
 }
 
 TimedStatistics TimedReplay::finish() {
     Impl& i = *impl_;
-    if (!i.cta.empty()) i.place_cta();
-    while (!i.idle()) i.run_window();
+    i.run_all();
     TimedStatistics& t = i.total;
-    Cycle last = 0;
-    for (const TimedSm& sm : i.sms) {
-        last = std::max(last, sm.last_end());
-        t += sm.statistics;
-    }
+    for (const TimedSm& sm : i.sms) t += sm.statistics;
     const Gpu& gpu = i.rules.gpu;
-    t.cycles = last + i.rules.timing.launch_cycles;
+    const double streamed =
+        static_cast<double>(i.streamed.sectors()) * i.memory.dram_cycles_per_sector() / i.rules.timing.dram_channels;
+    t.cycles = i.last_end() + i.rules.timing.launch_cycles + static_cast<Cycle>(std::ceil(streamed));
     t.seconds = static_cast<double>(t.cycles) / (i.rules.timing.clock_mhz * 1e6);
     t.l2 = i.memory.l2();
-    t.dram_sectors = i.memory.dram_sectors();
+    t.dram_sectors = i.memory.dram_sectors() + i.streamed.sectors();
     const auto asked = static_cast<double>(t.l2.requests());
     t.issue.copies = std::uint64_t{gpu.sms} * i.rules.timing.schedulers;
     t.l1_port.copies = std::uint64_t{gpu.sms} * gpu.l1_per_sm;

@@ -32,6 +32,10 @@ public:
     /// Hands over the next warp of the launch, in warp order.
     void push(std::shared_ptr<const traces::WarpTrace>);
 
+    /// The warps pushed so far are a kernel, and the next is launched when they have ended, on SM 0: L1s empty, L2
+    /// kept. What kernels write and sorts move: streamed_traffic.hpp.
+    void end_kernel();
+
     /// No more warps: runs to the end.
     TimedStatistics finish();
 

@@ -1,0 +1,74 @@
+// Traffic of a wavefront that a timed replay charges as bandwidth alone: what warps write, and what sorts move.
+//
+// A store needs no answer, so no warp waits for it. Every distinct sector that a warp access writes is taken to go to
+// DRAM once, which is more than the functional replay finds (there a sector changed twice in L2 is written once). The
+// time of these bytes at the bandwidth of DRAM is added to the launch, as if nothing overlapped it: true of a sort,
+// pessimistic for writes.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "traces/header.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+class StreamedTraffic {
+public:
+    StreamedTraffic(const std::vector<traces::Region>& regions, std::uint32_t sector_bytes)
+        : regions_(regions), sector_bytes_(sector_bytes) {
+        for (const traces::Region& r : regions) any_ |= streams(r);
+    }
+
+    /// The warp without the records that stream, whose sectors are added up.
+    std::shared_ptr<const traces::WarpTrace> take(std::shared_ptr<const traces::WarpTrace> warp) {
+        if (!any_) return warp;
+        auto rest = std::make_shared<traces::WarpTrace>();
+        rest->launch = warp->launch;
+        rest->warp = warp->warp;
+        const std::uint32_t* element = warp->elements.data();
+        for (const traces::Record& record : warp->records) {
+            const unsigned lanes = record.is_access() ? record.lanes() : 0;
+            if (lanes != 0 && streams(regions_[record.region])) {
+                sectors_ += sectors_of(regions_[record.region], element, lanes);
+            } else {
+                rest->records.push_back(record);
+                rest->elements.insert(rest->elements.end(), element, element + lanes);
+            }
+            element += lanes;
+        }
+        return rest;
+    }
+
+    std::uint64_t sectors() const { return sectors_; }
+
+private:
+    static bool streams(const traces::Region& r) {
+        return traces::is_write(r.kind) || r.kind == traces::ObjectKind::sort;
+    }
+
+    std::uint64_t sectors_of(const traces::Region& region, const std::uint32_t* elements, unsigned lanes) {
+        if (region.kind == traces::ObjectKind::sort)
+            return (std::uint64_t{lanes} * region.element_size + sector_bytes_ - 1) / sector_bytes_;
+        touched_.clear();
+        for (unsigned i = 0; i < lanes; ++i) {
+            const std::uint64_t first = region.address(elements[i]) / sector_bytes_;
+            const std::uint64_t last = (region.address(elements[i]) + region.element_size - 1) / sector_bytes_;
+            for (std::uint64_t s = first; s <= last; ++s) touched_.push_back(s);
+        }
+        std::sort(touched_.begin(), touched_.end());
+        return static_cast<std::uint64_t>(std::unique(touched_.begin(), touched_.end()) - touched_.begin());
+    }
+
+    const std::vector<traces::Region>& regions_;
+    std::uint32_t sector_bytes_;
+    bool any_ = false;
+    std::uint64_t sectors_ = 0;
+    std::vector<std::uint64_t> touched_;
+};
+
+}  // namespace raycache::cachesim
