@@ -107,12 +107,13 @@ std::string to_csv(const QualityReport& report) {
         for (const double value :
              {e.rmse.value, e.rmse.error, ratio, e.relative_rmse.value, e.r8.value, e.r8.error, e.block_rmse,
               e.mean_error, e.mean_error_deviation, e.z_pixels, e.z_seeds.value_or(none)})
-            text += "," + field(value);
+            text += fmt::format(",{}", field(value));
         const auto worst = row.worst_pair();
         text += worst ? fmt::format(",{}-{},{}", 2 * worst->pair, 2 * worst->pair + 1, field(worst->share)) : ",,";
         const auto speed_up = row.timing ? row.timing->speed_up : std::nullopt;
-        text += "," + field(row.timing ? row.timing->seconds : none) + "," + field(speed_up ? speed_up->mean : none) +
-                "," + field(speed_up && speed_up->half_width ? *speed_up->half_width : none);
+        text += fmt::format(",{},{},{}", field(row.timing ? row.timing->seconds : none),
+                            field(speed_up ? speed_up->mean : none),
+                            field(speed_up && speed_up->half_width ? *speed_up->half_width : none));
         const auto& same = row.equal_time;
         text +=
             same ? fmt::format(",{},{},{}\n", same->spp, field(same->errors.rmse.value), field(same->errors.r8.value))

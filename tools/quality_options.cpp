@@ -12,7 +12,11 @@ namespace raycache::tools {
 
 void QualityOptions::add(CLI::App& app, bool require_gpu) {
     scene.add(app, true);
-    app.add_option("--reference-spp", reference_spp, "samples per pixel of the reference: independent random numbers")
+    app.add_option("--reference-spp", reference_spp, "samples per pixel of the reference")->capture_default_str();
+    app.add_option(
+           "--reference-strategy", reference_strategy,
+           "how the reference is sampled: random, or another that is unbiased and independent from pixel to pixel, "
+           "such as cranley-patterson, which needs fewer samples")
         ->capture_default_str();
     app.add_option("--reference", reference_file,
                    "FILE.exr that keeps the reference; default: a file in the user's cache folder, found by scene and "
@@ -51,6 +55,10 @@ QualityReport QualityOptions::measure(QualityRequest request) const {
     if (reference_spp < 2) throw UsageError(fmt::format("--reference-spp {}; expected 2 or more", reference_spp));
     if (!reference_file.empty() && !reference_file.ends_with(".exr"))
         throw UsageError(fmt::format("--reference {}; expected a name that ends in .exr", reference_file));
+    tracer::StrategySettings reference_settings;
+    reference_settings.decorrelation = reference_strategy;
+    const tracer::SamplingStrategy valid(reference_settings,
+                                         tracer::path_dimensions(request.cases.front().paths.bounces));
     std::set<std::string> warnings;
     for (const auto& c : request.cases)
         warnings.insert(tracer::SamplingStrategy(c.strategy, tracer::path_dimensions(c.paths.bounces)).warning());
@@ -61,8 +69,9 @@ QualityReport QualityOptions::measure(QualityRequest request) const {
     const auto prepared = scene.prepare();
     const tracer::CaptureSettings& first = request.cases.front();
     QualityReport result;
-    tracer::Reference reference = find_reference(*prepared, {first.width, first.height, first.paths, reference_spp},
-                                                 reference_file, result.reference_path);
+    tracer::Reference reference =
+        find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol"},
+                       reference_file, result.reference_path);
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";

@@ -15,7 +15,7 @@ struct QualityOptions {
     ReportOptions report;  ///< GPU, its changes, baseline, format
     ThreadOptions threads;
     std::uint64_t reference_spp = 1024, repeats = 1;
-    std::string reference_file;
+    std::string reference_file, reference_strategy = "random";
 
     /// `require_gpu`: --gpu must be given; else it may be.
     void add(CLI::App&, bool require_gpu);

@@ -15,7 +15,8 @@ std::string decimals(double value, int digits) {
 }
 std::string digits(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 std::string with_error(double value, double error, int places) {
-    return decimals(value, places) + (std::isfinite(error) ? " ±" + decimals(error, places) : "");
+    return std::isfinite(error) ? fmt::format("{} ±{}", decimals(value, places), decimals(error, places))
+                                : decimals(value, places);
 }
 
 template <class Value>
@@ -80,11 +81,10 @@ std::string to_text(const QualityReport& report) {
                 worst ? fmt::format("{},{}: {:.0f} %", 2 * worst->pair, 2 * worst->pair + 1, 100 * worst->share) : "-");
         }
         if (timed)
-            cells.push_back(row.timing->speed_up ? decimals(row.timing->speed_up->mean, 3) +
-                                                       (row.timing->speed_up->half_width
-                                                            ? " ±" + decimals(*row.timing->speed_up->half_width, 3)
-                                                            : "")
-                                                 : (row.baseline ? "1" : "-"));
+            cells.push_back(
+                row.timing->speed_up
+                    ? with_error(row.timing->speed_up->mean, row.timing->speed_up->half_width.value_or(std::nan("")), 3)
+                    : (row.baseline ? "1" : "-"));
         if (equal_time)
             cells.insert(cells.end(),
                          {fmt::format("{}", row.equal_time->spp), digits(row.equal_time->errors.rmse.value)});

@@ -67,10 +67,10 @@ Recommendation recommend(const Options& o, const QualityReport& report) {
     }
     advice.mu = best->strategy().parameters.mu;
     advice.text = fmt::format("{} with {}, the least with {}", o.swept, describe(*best, report.rows), bounds);
-    if (refused) advice.text += "; below it, " + describe(*refused, report.rows);
+    if (refused) advice.text += fmt::format("; below it, {}", describe(*refused, report.rows));
     const auto& up = best->timing->speed_up;
     if (up && up->mean - up->half_width.value_or(0) <= 1)
-        advice.text += "; no certain gain over " + std::string(baseline);
+        advice.text += fmt::format("; no certain gain over {}", baseline);
     return advice;
 }
 

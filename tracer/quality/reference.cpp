@@ -12,8 +12,8 @@ namespace raycache::tracer {
 namespace {
 
 constexpr std::uint64_t first_seed = 0x7265666572656e63;  // "referenc"
-constexpr std::uint64_t seeds = std::uint64_t{1} << 26;   // enough for 2^33 samples
-constexpr std::uint64_t block = 256;  ///< samples rendered together: a float sum of more would lose digits
+constexpr std::uint64_t seeds = std::uint64_t{1} << 26;   // enough for 2^37 samples
+constexpr std::uint64_t block = 4096;  ///< samples rendered together: a float sum of more would lose digits
 
 using Sum = std::array<double, 3>;
 
@@ -23,7 +23,8 @@ std::vector<Sum> render_half(const PreparedScene& scene, const ReferenceSettings
     std::vector<Sum> mean(std::size_t{settings.width} * settings.height);
     for (std::uint64_t done = 0; done < spp; done += block, seed += 2) {
         RenderSettings part{settings.width, settings.height, settings.paths, {}};
-        part.strategy.decorrelation = "random";
+        part.strategy.decorrelation = settings.decorrelation;
+        part.strategy.sequence = settings.sequence;
         part.strategy.parameters.spp = std::min(block, spp - done);
         part.strategy.parameters.seed = seed;
         const Image image = render(scene, part, progress);
@@ -47,10 +48,11 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     std::string key = fmt::format(
         "raycache reference 1; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
         "pixels; "
-        "{} bounces{}; random, {} samples per pixel, blocks of {}, seed {:x}",
+        "{} bounces{}; {} {}, {} samples per pixel, blocks of {}, seed {:x}",
         scene.hash, scene.triangle_count(), text(scene.sky), text(camera.eye), text(camera.forward), text(camera.up),
         camera.vertical_fov, settings.width, settings.height, settings.paths.bounces,
-        settings.paths.russian_roulette ? ", roulette" : "", settings.spp, block, first_seed);
+        settings.paths.russian_roulette ? ", roulette" : "", settings.decorrelation, settings.sequence, settings.spp,
+        block, first_seed);
     if (scene.sun)
         key += fmt::format("; sun {} irradiance {} radius {}", text(scene.sun->direction), text(scene.sun->irradiance),
                            scene.sun->angular_radius);

@@ -24,14 +24,17 @@ struct ReferenceSettings {
     std::uint32_t width = 512, height = 512;  ///< pixels
     PathSettings paths;
     std::uint64_t spp = 1024;  ///< samples per pixel of both halves together, at least 2; odd numbers are rounded up
+    /// Must be unbiased and draw each pixel's numbers independently of other pixels' and of other seeds'.
+    std::string decorrelation = "random", sequence = "sobol";
 };
 
 /// Everything the reference depends on, in words, the scene's content by its hash. Equal keys, equal pictures.
 std::string reference_key(const PreparedScene&, const ReferenceSettings&);
 
-/// Plain Monte Carlo, the estimator that shares nothing with a strategy: independent random numbers for each pixel,
-/// sample and dimension (the decorrelation `random`), in blocks of 256 samples with seeds of their own that
-/// check_seeds() keeps away from the strategies'. Throws UsageError for less than 2 samples. `progress` as in render().
+/// By default plain Monte Carlo, the estimator that shares nothing with a strategy: independent random numbers for each
+/// pixel, sample and dimension. In blocks of 4096 samples, each with a seed of its own that check_seeds() keeps away
+/// from the strategies'. Throws UsageError for less than 2 samples and as SamplingStrategy does. `progress` as in
+/// render().
 Reference render_reference(const PreparedScene&, const ReferenceSettings&,
                            const std::function<void(std::uint64_t paths)>& progress);
 
