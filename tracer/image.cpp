@@ -195,9 +195,10 @@ void write_channels(const std::string& path, std::uint32_t width, std::uint32_t 
 
 ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes) {
     const auto fail = [&](const std::string& found) {
-        throw Error(fmt::format("{}: expected a whole OpenEXR image of 32-bit floats, found {}; remove it or name "
-                                "another file",
-                                path, found));
+        throw Error(
+            fmt::format("{}: expected a whole OpenEXR image of 32-bit floats, found {}; remove it or name "
+                        "another file",
+                        path, found));
     };
     std::ifstream stream(path, std::ios::binary);
     std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
