@@ -14,6 +14,8 @@ void add_verify(CLI::App&);
 void add_replay(CLI::App&);
 void add_compare(CLI::App&);
 void add_explain(CLI::App&);
+void add_quality(CLI::App&);
+void add_sweep(CLI::App&);
 void add_export(CLI::App&);
 void add_import(CLI::App&);
 void add_list(CLI::App&);

@@ -9,13 +9,14 @@
 #include <limits>
 
 #include "tools/canvas.hpp"
+#include "tools/colour_scale.hpp"
 #include "tools/pixel_font.hpp"
 
 namespace raycache::tools {
 
 namespace {
 
-constexpr unsigned margin = 16, bar_height = 14, text_scale = 2, line = glyph_height * text_scale + 4;
+constexpr unsigned margin = 16, bar_height = ScaleBar::height, text_scale = ScaleBar::text_scale, line = ScaleBar::line;
 constexpr unsigned smallest_panel = 384, largest_panel = 640;  ///< pixels of a panel's longer side, about
 constexpr std::uint32_t block = 8;  ///< pixels on a side of the squares over which differences are averaged
 
@@ -70,28 +71,6 @@ Grid difference(const Grid& base, const Grid& other) {
     return grid;
 }
 
-double percentile(std::vector<double> values, double share) {
-    std::erase_if(values, [](double v) { return std::isnan(v); });
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
-/// The least of 1, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is no less.
-double round_up(double value) {
-    if (!(value > 0)) return 1;
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    for (const double step : {1., 2., 3., 4., 5., 6., 8.})
-        if (step * power >= value * (1 - 1e-9)) return step * power;
-    return 10 * power;
-}
-
-struct Scale {
-    double low, high;
-    std::function<Colour(double share)> colour;  ///< of 0 … 1 from low to high
-};
-
 Scale common_scale(const Quantity& quantity, const Grid& base, const Grid& other) {
     std::vector<double> both = base.values;
     both.insert(both.end(), other.values.begin(), other.values.end());
@@ -105,13 +84,6 @@ Scale common_scale(const Quantity& quantity, const Grid& base, const Grid& other
     }
     if (!(high > low)) high = low + 1;
     return {low, high, viridis};
-}
-
-Scale difference_scale(const Grid& grid) {
-    std::vector<double> sizes;
-    for (const double value : grid.values) sizes.push_back(std::fabs(value));
-    const double high = round_up(percentile(sizes, 0.99));
-    return {-high, high, [](double share) { return blue_white_red(2 * share - 1); }};
 }
 
 /// How many pixels of the picture a pixel of the map takes, or the other way round.
@@ -136,21 +108,6 @@ void draw_panel(Canvas& canvas, unsigned x, unsigned y, const Grid& grid, const 
     canvas.outline(x, y, zoom.panel_width, zoom.panel_height, {0, 0, 0});
 }
 
-std::string number(double value) { return fmt::format("{:.4g}", value == 0 ? 0 : value); }
-
-/// A bar of all colours with its ends and middle in numbers, and the unit below.
-void draw_bar(Canvas& canvas, unsigned x, unsigned y, unsigned width, const Scale& scale, const std::string& unit) {
-    for (unsigned i = 0; i < width; ++i) canvas.fill(x + i, y, 1, bar_height, scale.colour((i + 0.5) / width));
-    canvas.outline(x, y, width, bar_height, {0, 0, 0});
-    const std::string low = number(scale.low), middle = number((scale.low + scale.high) / 2), high = number(scale.high);
-    const unsigned below = y + bar_height + 4;
-    canvas.text(x, below, low, text_scale);
-    canvas.text(x + (width - Canvas::text_width(middle, text_scale)) / 2, below, middle, text_scale);
-    canvas.text(x + width - Canvas::text_width(high, text_scale), below, high, text_scale);
-    canvas.text(x + (width - std::min(width, Canvas::text_width(unit, text_scale))) / 2, below + line, unit,
-                text_scale);
-}
-
 }  // namespace
 
 tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const HeatMap& other) {
@@ -171,13 +128,13 @@ tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const He
         const unsigned x = margin + column * (panel + margin);
         const Grid grid = grid_of(base, quantity), other_grid = grid_of(other, quantity);
         const Grid change = difference(grid, other_grid);
-        const Scale scale = common_scale(quantity, grid, other_grid), change_scale = difference_scale(change);
+        const Scale scale = common_scale(quantity, grid, other_grid), change_scale = symmetric_scale(change.values);
         canvas.text(x, margin + line + 8, quantity.title, 3);
         draw_panel(canvas, x, row_top[0] + line, grid, scale, zoom);
         draw_panel(canvas, x, row_top[1] + line, other_grid, scale, zoom);
-        draw_bar(canvas, x, row_top[1] + row_height - 4, zoom.panel_width, scale, quantity.unit);
+        ScaleBar::draw(canvas, x, row_top[1] + row_height - 4, zoom.panel_width, scale, quantity.unit);
         draw_panel(canvas, x, row_top[2] + line, change, change_scale, zoom);
-        draw_bar(canvas, x, row_top[2] + row_height - 4, zoom.panel_width, change_scale, quantity.difference);
+        ScaleBar::draw(canvas, x, row_top[2] + row_height - 4, zoom.panel_width, change_scale, quantity.difference);
     }
     return canvas.image();
 }

@@ -47,6 +47,8 @@ int main(int argc, char** argv) {
     tools::add_replay(app);
     tools::add_compare(app);
     tools::add_explain(app);
+    tools::add_quality(app);
+    tools::add_sweep(app);
     tools::add_export(app);
     tools::add_import(app);
     tools::add_samples(app);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -177,9 +179,10 @@ void write_screen_image(const std::string& path, const ScreenImage& image) {
 }
 
 void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height,
-                    const std::vector<Channel>& channels) {
+                    const std::vector<Channel>& channels, const TextAttributes& attributes) {
     OIIO::ImageSpec spec = spec_of(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
+    for (const auto& [name, text] : attributes) spec.attribute(name, text);
     std::vector<float> interleaved(std::size_t{width} * height * channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c) {
         check_size(path, width, height, channels[c].values.size());
@@ -188,6 +191,39 @@ void write_channels(const std::string& path, std::uint32_t width, std::uint32_t 
             interleaved[i * channels.size() + c] = channels[c].values[i];
     }
     write_encoded(path, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
+}
+
+ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes) {
+    const auto fail = [&](const std::string& found) {
+        throw Error(
+            fmt::format("{}: expected a whole OpenEXR image of 32-bit floats, found {}; remove it or name "
+                        "another file",
+                        path, found));
+    };
+    std::ifstream stream(path, std::ios::binary);
+    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream || bytes.empty()) fail("no file that can be read");
+    if (!starts_with(bytes, "\x76\x2f\x31\x01")) fail("something else");
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    const auto input = OIIO::ImageInput::create("openexr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->set_ioproxy(&memory) || !input->open("memory.exr", spec))
+        fail("a damaged one (" + first_line(input ? input->geterror() : OIIO::geterror()) + ")");
+    if (spec.width < 1 || spec.height < 1 || spec.width > max_side || spec.height > max_side || spec.nchannels < 1 ||
+        spec.nchannels > 64 || spec.format != OIIO::TypeDesc::FLOAT)
+        fail("another kind of image");
+    ChannelFile file{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height), {}, {}};
+    const std::size_t pixels = std::size_t{file.width} * file.height, count = static_cast<std::size_t>(spec.nchannels);
+    std::vector<float> interleaved(pixels * count);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
+        fail("a damaged one (" + first_line(input->geterror()) + ")");
+    for (std::size_t c = 0; c < count; ++c) {
+        Channel& channel = file.channels.emplace_back(Channel{spec.channelnames[c], std::vector<float>(pixels)});
+        for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = interleaved[i * count + c];
+    }
+    for (const std::string& name : attributes)
+        file.attributes.emplace_back(name, std::string(spec.get_string_attribute(name)));
+    return file;
 }
 
 }  // namespace raycache::tracer

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tracer/vec.hpp"
@@ -52,8 +53,19 @@ struct Channel {
     std::string name;  ///< "layer.channel" or "channel"
     std::vector<float> values;
 };
+using TextAttributes = std::vector<std::pair<std::string, std::string>>;  ///< name, text
 /// Writes an .exr of 32-bit floats. Throws as write_image() does.
-void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height, const std::vector<Channel>&);
+void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height, const std::vector<Channel>&,
+                    const TextAttributes& = {});
+
+struct ChannelFile {
+    std::uint32_t width = 0, height = 0;
+    std::vector<Channel> channels;
+    TextAttributes attributes;
+};
+/// Reads an .exr of floats with the attributes of these names; one that the file lacks is empty. Throws Error where the
+/// file is missing, damaged or something else.
+ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes);
 
 /// Throws UsageError unless write_image() knows the extension of `path`.
 void check_image_name(const std::string& path);

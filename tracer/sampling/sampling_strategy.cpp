@@ -35,6 +35,24 @@ private:
     std::uint32_t counter_ = 0;
 };
 
+/// Another decorrelation, with one pair of dimensions left to `random`.
+class IndependentPair final : public Decorrelation {
+public:
+    IndependentPair(std::unique_ptr<Decorrelation> others, std::uint32_t pair, const DecorrelationSettings& settings)
+        : others_(std::move(others)), independent_(make_decorrelation("random", settings)), pair_(pair) {}
+
+    std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t index,
+                        std::uint32_t dimension) const override {
+        return (dimension / 2 == pair_ ? independent_ : others_)->apply(x, pixel, index, dimension);
+    }
+    std::string parameters() const override { return others_->parameters(); }
+    std::string warning() const override { return others_->warning(); }
+
+private:
+    std::unique_ptr<Decorrelation> others_, independent_;
+    std::uint32_t pair_;
+};
+
 }  // namespace
 
 SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32_t dimensions)
@@ -55,6 +73,9 @@ SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32
     }
     settings_.parameters.dimensions = dimensions;
     decorrelation_ = make_decorrelation(settings.decorrelation, settings_.parameters, *sequence_);
+    if (settings.independent_pair)
+        decorrelation_ = std::make_unique<IndependentPair>(std::move(decorrelation_), *settings.independent_pair,
+                                                           settings.parameters);
 }
 
 std::vector<std::uint32_t> SamplingStrategy::base_point(std::uint64_t index) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct StrategySettings {
     std::string sequence = "sobol";
     std::string decorrelation = "micro-jitter";
     DecorrelationSettings parameters;
+    /// q: dimensions 2q and 2q + 1 get what `random` would give them, to see what error a pair of dimensions causes.
+    std::optional<std::uint32_t> independent_pair;
 };
 
 class SamplingStrategy {

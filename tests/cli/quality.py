@@ -1,0 +1,190 @@
+#!/usr/bin/python3
+"""raycache quality, raycache sweep and tools/plot_sweep."""
+import csv
+import io
+import os
+import pathlib
+import subprocess
+import sys
+
+from support import ROOT, SCENE, ProgramTest, main
+
+CORNELL = pathlib.Path(os.environ.get("RAYCACHE_SCENES") or ROOT.parent / "shared/scenes") / "cornell_box.glb"
+SMALL = {"--resolution": "32x32", "--spp": "8", "--reference-spp": "64", "--bounces": "1"}
+GPU = ["--gpu", "gtx-980-ti", "--trace-samples", "2"]
+# A scene with a light of its own, and no warning; the courtyard where the real scenes are not there.
+NAMED = [str(CORNELL)] if CORNELL.exists() else SCENE
+
+
+def small(*arguments):
+    """The scene and the small settings, but for those that the arguments give."""
+    settings = [word for option, value in SMALL.items() if option not in arguments for word in (option, value)]
+    return [*NAMED, *settings, *arguments]
+
+
+class QualityTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        os.environ["XDG_CACHE_HOME"] = str(self.path("cache"))
+        self.addCleanup(os.environ.pop, "XDG_CACHE_HOME")
+
+    def quality(self, *arguments, **keywords):
+        return self.succeeds("quality", *small(*arguments), **keywords)
+
+    def references(self):
+        return sorted((self.path("cache") / "raycache/references").glob("*"))
+
+
+class Quality(QualityTest):
+    def test_the_table_has_a_row_per_strategy_and_says_what_its_columns_mean(self):
+        text = self.quality("--strategy", "coherent,cranley-patterson").text
+        lines = text.splitlines()
+        self.assertIn("R8", lines[0])
+        self.assertEqual([line.split()[0] for line in lines[2:4]], ["coherent", "cranley-patterson"])
+        for words in ("R8: ", "z: ", "reference of 64 samples per pixel"):
+            self.assertIn(words, text)
+
+    def test_coherent_errors_are_shared_and_those_of_random_numbers_are_not(self):
+        rows = {r["strategy"]: r for r in self.quality("--json").json["rows"]}
+        self.assertEqual(set(rows), {"coherent", "cranley-patterson", "micro-jitter", "random"})
+        self.assertGreater(rows["coherent"]["r8"]["value"], 8)
+        self.assertGreater(rows["coherent"]["z_pixels"], 2)
+        for name in ("cranley-patterson", "random"):
+            self.assertLess(rows[name]["r8"]["value"], 4)
+            self.assertLess(rows[name]["z_pixels"], 2.5)
+        self.assertEqual(rows["cranley-patterson"]["rmse_ratio"], 1)
+        self.assertLess(rows["cranley-patterson"]["rmse"]["value"], rows["random"]["rmse"]["value"])
+
+    def test_the_reference_is_kept_and_gives_the_same_result_again_for_any_number_of_threads(self):
+        first = self.quality("--json", "--threads", "1").stdout
+        kept = self.references()
+        self.assertEqual(len(kept), 1)
+        bytes_before, time_before = kept[0].read_bytes(), kept[0].stat().st_mtime_ns
+        self.assertEqual(self.quality("--json", "--threads", "2").stdout, first)
+        self.assertEqual(kept[0].stat().st_mtime_ns, time_before)
+        self.assertEqual(kept[0].read_bytes(), bytes_before)
+        kept[0].unlink()
+        self.assertEqual(self.quality("--json", "--threads", "2").stdout, first)
+        self.assertEqual(self.references()[0].read_bytes(), bytes_before)
+
+    def test_a_damaged_cache_file_is_rendered_again_with_a_warning(self):
+        first = self.quality("--csv").stdout
+        path = self.references()[0]
+        whole = path.read_bytes()
+        for damaged in (whole[:len(whole) // 2], b"nonsense", whole[:-300] + bytes(100) + whole[-200:]):
+            with self.subTest(len(damaged)):
+                path.write_bytes(damaged)
+                result = self.warns("quality", *small("--csv"))
+                self.assertEqual(result.stdout, first)
+                self.assertIn("rendered again", result.stderr)
+                self.assertEqual(path.read_bytes(), whole)
+
+    def test_another_scene_view_or_size_has_a_reference_of_its_own(self):
+        self.quality("--strategy", "random")
+        self.quality("--strategy", "random", "--fov", "20")
+        self.quality("--strategy", "random", "--reference-spp", "32")
+        self.assertEqual(len(self.references()), 3)
+
+    def test_a_named_reference_is_written_once_then_used_and_refused_where_it_does_not_fit(self):
+        first = self.quality("--csv", "--reference", "mine.exr").stdout
+        self.assertFalse(self.references())
+        self.assertEqual(self.quality("--csv", "--reference", "mine.exr").stdout, first)
+        self.refuses(1, "quality", *small("--reference", "mine.exr", "--resolution", "16x32"), mentions=["mine.exr"])
+        self.path("mine.exr").write_bytes(b"nonsense")
+        self.refuses(1, "quality", *small("--reference", "mine.exr"), mentions=["mine.exr"])
+        self.assertEqual(self.path("mine.exr").read_bytes(), b"nonsense")
+        self.refuses(2, "quality", *small("--reference", "mine.png"), mentions=[".exr"])
+
+    def test_more_seeds_give_a_second_bias_test(self):
+        result = self.quality("--json", "--repeats", "4", "--strategy", "cranley-patterson,coherent").json
+        cp, coherent = result["rows"]
+        self.assertLess(cp["z_seeds"], 2.5)
+        self.assertGreater(coherent["z_seeds"], 2.5)
+        self.assertIn("z seeds", self.quality("--repeats", "2").text)
+
+    def test_pairs_name_the_dimensions_that_cause_shared_error(self):
+        row = self.quality("--json", "--pairs", "--strategy", "coherent").json["rows"][0]
+        pairs = row["dimension_pairs"]
+        self.assertEqual([p["dimensions"] for p in pairs], [[2 * q, 2 * q + 1] for q in range(6)])
+        self.assertGreater(max(p["share_of_structured_error"] for p in pairs), 0.1)
+        self.assertIn("worst pair", self.quality("--pairs", "--strategy", "coherent").text)
+
+    def test_pictures_show_every_strategy_at_equal_samples_and_at_equal_predicted_time(self):
+        text = self.quality("--strategy", "cranley-patterson,micro-jitter", *GPU, "--output", "a/b").text
+        self.assertIn("speed-up", text)
+        self.assertIn("N equal time", text)
+        names = {p.name for p in self.path("a/b").iterdir()}
+        stems = ["cranley-patterson", "micro-jitter"]
+        self.assertEqual(names, {"index.png", "reference.png"} | {s + e for s in stems for e in (
+            ".exr", ".png", "_error.exr", "_error.png", "_blocks.exr")})
+        self.assertEqual((self.path("a/b") / "index.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_csv_has_one_row_per_strategy_sequence_and_n(self):
+        text = self.quality("--csv", "--sequence", "sobol,halton", "--spp", "4,8", "--strategy", "random").text
+        rows = list(csv.DictReader(io.StringIO(text)))
+        self.assertEqual([(r["sequence"], r["spp"]) for r in rows],
+                         [("sobol", "4"), ("sobol", "8"), ("halton", "4"), ("halton", "8")])
+        self.assertEqual(rows[0]["rmse"], rows[2]["rmse"])  # random ignores the sequence
+        self.assertGreater(float(rows[0]["rmse"]), float(rows[1]["rmse"]))
+
+    def test_bad_input_is_refused_in_one_line(self):
+        for arguments, word in ((["--spp", "0"], "0"), (["--strategy", "no-such"], "no-such"),
+                                (["--sequence", "no-such"], "no-such"), (["--resolution", "0x32"], "0x32"),
+                                (["--repeats", "0"], "--repeats"), (["--reference-spp", "1"], "--reference-spp"),
+                                (["--bounces", "65"], "--bounces"), (["--baseline", "no-such"], "no-such"),
+                                (["--crop", "0,0,8"], "--output"), (["--crop", "0,0,99", "--output", "x"], "--crop"),
+                                (["--json", "--csv"], "--csv"), (["--gpu", "no-such"], "no-such"),
+                                (["--seed", str(0x7265666572656e63)], "--seed")):
+            with self.subTest(arguments):
+                self.refuses(2, "quality", *small(*arguments), mentions=[word])
+        self.path("file").write_text("")
+        self.refuses(1, "quality", *small("--output", "file/folder"), mentions=["file/folder"])
+        self.refuses(1, "quality", *small("--reference", "none/a.exr"), mentions=["none/a.exr"])
+
+
+class Sweep(QualityTest):
+    def sweep(self, *arguments):
+        return self.succeeds("sweep", *small(*GPU, "--mu", "0,0.25,1", *arguments))
+
+    def test_the_ends_of_the_sweep_are_coherent_and_as_good_as_cranley_patterson(self):
+        result = self.sweep("--json").json
+        rows = {(r["strategy"], r["mu"]): r for r in result["rows"]}
+        zero, one = rows["micro-jitter", 0], rows["micro-jitter", 1]
+        coherent, cp = rows["coherent", None], rows["cranley-patterson", None]
+        self.assertEqual(zero["rmse"], coherent["rmse"])
+        self.assertEqual(zero["speed_up"], coherent["speed_up"])
+        self.assertAlmostEqual(one["speed_up"]["mean"], 1, delta=0.1)
+        self.assertLess(one["r8"]["value"], zero["r8"]["value"])
+        self.assertIsNone(cp["speed_up"])
+        self.assertTrue(result["recommendation"])
+        if result["recommended_mu"] is not None:
+            best = rows["micro-jitter", result["recommended_mu"]]
+            self.assertLessEqual(best["r8"]["value"], result["accepted"]["r8"])
+
+    def test_the_recommendation_is_the_least_mu_with_an_acceptable_picture(self):
+        self.assertIn("recommendation: micro-jitter with mu 0 ",
+                      self.sweep("--max-r8", "1e9", "--max-rmse", "1e9").text)
+        self.assertIn("recommendation: no mu of this list", self.sweep("--max-rmse", "0").text)
+
+    def test_the_plot_is_drawn_and_bad_input_to_it_refused(self):
+        self.path("sweep.json").write_bytes(self.sweep("--json").stdout)
+        plot = [sys.executable, ROOT / "tools/plot_sweep"]
+        subprocess.run([*plot, "sweep.json", "-o", "sweep.png"], cwd=self.folder, check=True, timeout=120)
+        self.assertEqual(self.path("sweep.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.path("bad.json").write_text("{}")
+        done = subprocess.run([*plot, "bad.json", "-o", "bad.png"], cwd=self.folder, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(b"bad.json", done.stderr)
+        self.assertFalse(self.path("bad.png").exists())
+
+    def test_bad_input_is_refused_in_one_line(self):
+        for arguments, word in ((["--mu", "2"], "--mu"), (["--mu", "-0.1"], "--mu"), (["--mu", "nan"], "--mu"),
+                                (["--swept", "no-such"], "no-such"), (["--baseline", "random"], "cranley-patterson"),
+                                (["--spp", "0"], "0")):
+            with self.subTest(arguments):
+                self.refuses(2, "sweep", *small(*GPU, *arguments), mentions=[word])
+        self.refuses(2, "sweep", *small(), mentions=["--gpu"])
+
+
+if __name__ == "__main__":
+    main()

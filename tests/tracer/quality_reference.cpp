@@ -1,0 +1,170 @@
+// References: rendered, kept in files, and found again only where they are what was asked for.
+#include <tbb/global_control.h>
+
+#include <catch2/catch.hpp>
+
+#include "tests/traces/files.hpp"
+#include "tracer/quality/error_measures.hpp"
+#include "tracer/quality/reference_file.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tracer {
+namespace {
+
+const PreparedScene& courtyard() {
+    static const PreparedScene scene(
+        [] {
+            SceneRequest request;
+            request.source = "courtyard";
+            request.detail = 50000;
+            return load_scene(request, {});
+        }(),
+        {});
+    return scene;
+}
+
+ReferenceSettings small() {
+    ReferenceSettings settings;
+    settings.width = 24;
+    settings.height = 16;
+    settings.spp = 6;
+    return settings;
+}
+
+}  // namespace
+
+TEST_CASE("a reference is the same whatever the number of threads", "[quality]") {
+    const Reference all = render_reference(courtyard(), small(), {});
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Reference single = render_reference(courtyard(), small(), {});
+    CHECK(all.mean.pixels == single.mean.pixels);
+    CHECK(all.half_difference.pixels == single.half_difference.pixels);
+    CHECK(all.key == single.key);
+}
+
+TEST_CASE("the half difference is as large as the reference's error against a better one", "[quality]") {
+    ReferenceSettings settings = small(), better = small();
+    settings.paths.bounces = better.paths.bounces = 1;
+    settings.spp = 32;
+    better.spp = 2048;
+    const Reference rough = render_reference(courtyard(), settings, {});
+    const Reference fine = render_reference(courtyard(), better, {});
+    const ErrorMeasures m = measure_errors(std::span(&rough.mean, 1), fine);
+    const ErrorMeasures own = measure_errors(std::span(&rough.mean, 1), rough);
+    CHECK(own.reference_rmse == Approx(m.rmse.value).epsilon(0.2));
+    CHECK(m.z_pixels < 1.6);
+}
+
+TEST_CASE("every setting that changes the picture changes the key and the cached file's name", "[quality]") {
+    const std::string key = reference_key(courtyard(), small());
+    std::vector<ReferenceSettings> others(5, small());
+    others[0].width = 25;
+    others[1].height = 17;
+    others[2].spp = 8;
+    others[3].paths.bounces = 4;
+    others[4].paths.russian_roulette = true;
+    for (const auto& other : others) {
+        CHECK(reference_key(courtyard(), other) != key);
+        CHECK(cached_reference_path(reference_key(courtyard(), other)) != cached_reference_path(key));
+    }
+    Scene moved = courtyard().scene();
+    moved.cameras.front().eye.x += 0.5F;
+    CHECK(reference_key(PreparedScene(moved, {}), small()) != key);
+    Scene dark = courtyard().scene();
+    dark.sky = {0, 0, 0};
+    CHECK(reference_key(PreparedScene(dark, {}), small()) != key);
+    CHECK(reference_key(courtyard(), small()) == key);
+}
+
+TEST_CASE("a reference read back from its file is the one written, bit by bit", "[quality]") {
+    const TemporaryFolder folder;
+    const Reference written = render_reference(courtyard(), small(), {});
+    write_reference(folder / "a.exr", written);
+    const Reference read = read_reference(folder / "a.exr", written.key);
+    CHECK(read.mean.pixels == written.mean.pixels);
+    CHECK(read.half_difference.pixels == written.half_difference.pixels);
+    CHECK(read.mean.width == 24);
+    CHECK(read.mean.height == 16);
+    write_reference(folder / "b.exr", read);
+    CHECK(read_file(folder / "a.exr") == read_file(folder / "b.exr"));
+}
+
+TEST_CASE("files that are not the wanted reference are refused", "[quality]") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.exr";
+    const Reference written = render_reference(courtyard(), small(), {});
+    write_reference(path, written);
+    const std::vector<std::uint8_t> whole = read_file(path);
+
+    SECTION("another key") { CHECK_THROWS_AS(read_reference(path, written.key + "!"), Error); }
+    SECTION("missing") { CHECK_THROWS_AS(read_reference(folder / "none.exr", written.key), Error); }
+    SECTION("an EXR of someone else's") {
+        write_image(folder / "b.exr", written.mean);
+        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key), Error);
+    }
+    SECTION("our mark, but other pixels") {
+        std::vector<Channel> channels;
+        for (const char* name : {"R", "G", "B", "half_difference.R", "half_difference.G", "half_difference.B"})
+            channels.push_back({name, std::vector<float>(24 * 16, 1)});
+        write_channels(folder / "b.exr", 24, 16, channels,
+                       {{"raycache:reference", written.key}, {"raycache:checksum", "0000000000000000"}});
+        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key), Error);
+    }
+    SECTION("text") {
+        write_file(path, {'h', 'e', 'l', 'l', 'o'});
+        CHECK_THROWS_AS(read_reference(path, written.key), Error);
+    }
+    SECTION("cut short anywhere, or one byte changed: never other pixels") {
+        std::size_t wrong = 0, refused = 0, tried = 0;
+        for (std::size_t at = 0; at < whole.size(); at += 97) {
+            std::vector<std::uint8_t> damaged = whole;
+            damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 0x55);
+            for (const auto& bytes :
+                 {damaged, std::vector<std::uint8_t>(whole.begin(), whole.begin() + static_cast<long>(at))}) {
+                write_file(path, bytes);
+                ++tried;
+                try {
+                    const Reference read = read_reference(path, written.key);
+                    wrong += read.mean.pixels != written.mean.pixels ||
+                             read.half_difference.pixels != written.half_difference.pixels;
+                } catch (const Error&) {
+                    ++refused;
+                }
+            }
+        }
+        CHECK(wrong == 0);
+        CHECK(refused > tried / 2);
+    }
+}
+
+TEST_CASE("less than two samples and seeds of the reference are refused", "[quality]") {
+    ReferenceSettings settings = small();
+    for (const std::uint64_t spp : {0, 1}) {
+        settings.spp = spp;
+        CHECK_THROWS_AS(render_reference(courtyard(), settings, {}), UsageError);
+    }
+    CHECK_NOTHROW(check_seeds(1, 1024));
+    CHECK_NOTHROW(check_seeds(0, 1));
+    CHECK_THROWS_AS(check_seeds(0x7265666572656e63, 1), UsageError);
+    CHECK_THROWS_AS(check_seeds(0x7265666572656e63 - 3, 4), UsageError);
+    CHECK_NOTHROW(check_seeds(0x7265666572656e63 - 3, 3));
+}
+
+TEST_CASE("an independent pair gets random's numbers, the others keep theirs", "[quality]") {
+    StrategySettings settings;
+    settings.decorrelation = "coherent";
+    settings.parameters.spp = 16;
+    settings.parameters.seed = 5;
+    const SamplingStrategy plain(settings, 10);
+    settings.independent_pair = 2;
+    const SamplingStrategy with(settings, 10);
+    settings.independent_pair.reset();
+    settings.decorrelation = "random";
+    const SamplingStrategy random(settings, 10);
+    for (std::uint32_t d = 0; d < 10; ++d) {
+        const SamplingStrategy& same = d / 2 == 2 ? random : plain;
+        CHECK(with.value(77, 3, 4, d) == same.value(77, 3, 4, d));
+    }
+}
+
+}  // namespace raycache::tracer

@@ -1,0 +1,88 @@
+#include "tools/quality_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+
+void QualityOptions::add(CLI::App& app, bool require_gpu) {
+    scene.add(app, true);
+    app.add_option("--reference-spp", reference_spp, "samples per pixel of the reference")->capture_default_str();
+    app.add_option(
+           "--reference-strategy", reference_strategy,
+           "how the reference is sampled: random, or another that is unbiased and independent from pixel to pixel, "
+           "such as cranley-patterson, which needs fewer samples")
+        ->capture_default_str();
+    app.add_option("--reference", reference_file,
+                   "FILE.exr that keeps the reference; default: a file in the user's cache folder, found by scene and "
+                   "settings");
+    app.add_option("--repeats", repeats, "pictures of each strategy, with seeds one after the other")
+        ->capture_default_str();
+    CLI::Option* gpu = app.add_option("--gpu", report.gpus,
+                                      "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
+                           ->expected(1);
+    if (require_gpu) gpu->required();
+    app.add_option("--set", report.changes, "KEY=VALUE: another value for a key of the GPU file; may be repeated")
+        ->allow_extra_args(false);
+    app.add_option("--warps-per-sm", report.warps_per_sm, "resident warps of an SM, instead of the preset's")
+        ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
+    app.add_option("--baseline", report.baseline,
+                   "strategy that ratios refer to; default: cranley-patterson where it is compared");
+    sampling.add_launches(app);
+    sampling.add_picture(app);
+    sampling.add_strategy(app);
+    app.add_flag("--json", report.json, "print JSON");
+    app.add_flag("--csv", report.csv, "print CSV");
+    threads.add(app);
+}
+
+std::string QualityOptions::baseline_of(const std::vector<std::string>& strategies) const {
+    const std::string usual = "cranley-patterson";
+    if (!report.baseline.empty()) return report.baseline;
+    return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
+}
+
+QualityReport QualityOptions::measure(QualityRequest request) const {
+    const auto gpus = report.load_gpus();
+    if (!gpus.empty()) request.gpu = gpus.front();
+    request.repeats = repeats;
+    check(request);
+    if (reference_spp < 2) throw UsageError(fmt::format("--reference-spp {}; expected 2 or more", reference_spp));
+    if (!reference_file.empty() && !reference_file.ends_with(".exr"))
+        throw UsageError(fmt::format("--reference {}; expected a name that ends in .exr", reference_file));
+    tracer::StrategySettings reference_settings;
+    reference_settings.decorrelation = reference_strategy;
+    const tracer::SamplingStrategy valid(reference_settings,
+                                         tracer::path_dimensions(request.cases.front().paths.bounces));
+    std::set<std::string> warnings;
+    for (const auto& c : request.cases)
+        warnings.insert(settings_warning(c));
+    for (const std::string& w : warnings)
+        if (!w.empty()) warn(w);
+
+    const auto limit = threads.apply();
+    const auto prepared = scene.prepare();
+    const tracer::CaptureSettings& first = request.cases.front();
+    QualityReport result;
+    tracer::Reference reference =
+        find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol"},
+                       reference_file, result.reference_path);
+    result.scene = prepared->scene().name;
+    result.baseline = request.baseline;
+    result.gpu = request.gpu ? request.gpu->name : "";
+    result.reference_spp = reference_spp;
+    result.repeats = repeats;
+    result.width = first.width;
+    result.height = first.height;
+    result.rows = measure_quality(*prepared, reference, request);
+    result.reference = std::move(reference.mean);
+    add_notes(result);
+    return result;
+}
+
+}  // namespace raycache::tools

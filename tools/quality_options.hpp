@@ -1,0 +1,28 @@
+// What `quality` and `sweep` have in common: scene, reference, repeats, GPU, and how the result is printed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/options.hpp"
+#include "tools/quality_report.hpp"
+
+namespace raycache::tools {
+
+struct QualityOptions {
+    SceneOptions scene;
+    SamplingOptions sampling;
+    ReportOptions report;  ///< GPU, its changes, baseline, format
+    ThreadOptions threads;
+    std::uint64_t reference_spp = 1024, repeats = 1;
+    std::string reference_file, reference_strategy = "random";
+
+    /// `require_gpu`: --gpu must be given; else it may be.
+    void add(CLI::App&, bool require_gpu);
+    /// Fills in what the options say, checks it, loads the scene, finds the reference and measures.
+    QualityReport measure(QualityRequest request) const;
+    /// Of these strategies: the one asked for, else Cranley-Patterson where it is among them.
+    std::string baseline_of(const std::vector<std::string>& strategies) const;
+};
+
+}  // namespace raycache::tools
