@@ -16,6 +16,7 @@ void add_compare(CLI::App&);
 void add_explain(CLI::App&);
 void add_export(CLI::App&);
 void add_import(CLI::App&);
+void add_samples(CLI::App&);
 void add_list(CLI::App&);
 
 }  // namespace raycache::tools

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
     tools::add_explain(app);
     tools::add_export(app);
     tools::add_import(app);
+    tools::add_samples(app);
     tools::add_list(app);
     check_counts(app);
     try {
