@@ -30,6 +30,7 @@ DecorrelationSettings with_formula(double k, std::uint64_t n, unsigned s = 2) {
     settings.k = k;
     settings.s = s;
     settings.spp = n;
+    settings.width = 1920;
     return settings;
 }
 
@@ -245,6 +246,11 @@ TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrel
     check_refused(with_mu(-0.5), "mu must be a number of 0 or more, found -0.5");
     check_refused(with_mu(not_a_number), "found nan");
     check_refused(with_mu(infinity), "found inf");
+    DecorrelationSettings classes;
+    classes.interleave = 0;
+    check_refused(classes, "must be 1 to 256, found 0");
+    classes.interleave = 257;
+    check_refused(classes, "must be 1 to 256, found 257");
     DecorrelationSettings twice = with_cycles(16);
     twice.mu = 0.1;
     check_refused(twice, "not both");
@@ -255,7 +261,7 @@ TEST_CASE("sampling: an unknown decorrelation is refused in one line that lists 
     CHECK_THROWS_AS(make_decorrelation("microjitter", {}), UsageError);
     CHECK_THROWS_WITH(make_decorrelation("microjitter", {}),
                       Catch::Contains("'microjitter'") &&
-                          Catch::Contains("coherent, cranley-patterson, micro-jitter, random") &&
+                          Catch::Contains("coherent, cranley-patterson, micro-jitter, scrambling-distance") &&
                           !Catch::Contains("\n"));
 }
 

@@ -1,4 +1,5 @@
 // Thread maps: who traces which pixel and sample.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
@@ -101,8 +102,64 @@ TEST_CASE("thread map: samples visits pixels in the order of tile") {
         }
 }
 
+TEST_CASE("thread map: classes gives every pixel exactly once, and a warp pixels of one class, for any size and m") {
+    for (const auto& [width, height] : sizes)
+        for (const std::uint32_t m : {1U, 2U, 3U, 8U, 15U, 256U}) {
+            if (m > std::min(width, height)) {
+                if (m > 1) CHECK_THROWS_AS(LaunchGrid(ThreadMap::classes, width, height, 8, m), UsageError);
+                continue;
+            }
+            const LaunchGrid grid(ThreadMap::classes, width, height, 8, m);
+            CHECK(grid.samples_per_launch() == 1);
+            std::vector<int> count(std::size_t{width} * height);
+            std::uint32_t last_class = 0;
+            bool one_class = true, in_order = true;
+            for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+                const WarpJobs jobs = grid.jobs(warp, 5);
+                std::set<std::uint32_t> classes;
+                for (unsigned l = 0; l < 32; ++l) {
+                    if (((jobs.mask >> l) & 1U) == 0) continue;
+                    classes.insert(jobs.lane[l].y % m * m + jobs.lane[l].x % m);
+                    ++count.at(std::size_t{jobs.lane[l].y} * width + jobs.lane[l].x);
+                }
+                if (classes.empty()) continue;
+                one_class = one_class && classes.size() == 1;
+                in_order = in_order && *classes.begin() >= last_class;
+                last_class = *classes.begin();
+            }
+            INFO(width << "x" << height << " m " << m);
+            CHECK(one_class);
+            CHECK(in_order);
+            CHECK(std::count(count.begin(), count.end(), 1) == static_cast<std::ptrdiff_t>(count.size()));
+        }
+}
+
+TEST_CASE("thread map: a warp of classes is 8x4 pixels that lie m apart, and m = 1 is tile") {
+    const LaunchGrid grid(ThreadMap::classes, 512, 512, 1, 8), tile(ThreadMap::tile, 512, 512, 1);
+    CHECK(grid.warps() == 512 * 512 / 32);
+    const WarpJobs jobs = grid.jobs(grid.warps() / 64 * 9, 0);  // first warp of class (1, 1)
+    for (unsigned l = 0; l < 32; ++l) {
+        CHECK(jobs.lane[l].x == 1 + 8 * (l % 8));
+        CHECK(jobs.lane[l].y == 1 + 8 * (l / 8));
+    }
+    const LaunchGrid whole(ThreadMap::classes, 512, 512, 1, 1);
+    REQUIRE(whole.warps() == tile.warps());
+    for (std::uint32_t warp = 0; warp < tile.warps(); ++warp)
+        for (unsigned l = 0; l < 32; l += 31)
+            REQUIRE((whole.jobs(warp, 0).lane[l].x == tile.jobs(warp, 0).lane[l].x &&
+                     whole.jobs(warp, 0).lane[l].y == tile.jobs(warp, 0).lane[l].y));
+}
+
+TEST_CASE("thread map: more classes than the picture's shorter side has pixels, or none, are refused in one line") {
+    CHECK_THROWS_WITH(LaunchGrid(ThreadMap::classes, 64, 4, 8, 8),
+                      Catch::Contains("8x8 classes") && Catch::Contains("64x4") && !Catch::Contains("\n"));
+    CHECK_THROWS_AS(LaunchGrid(ThreadMap::classes, 64, 64, 8, 0), UsageError);
+    CHECK_NOTHROW(LaunchGrid(ThreadMap::tile, 64, 4, 8, 8));  // m plays no part
+}
+
 TEST_CASE("thread map: a name gives its map, another one is refused with the list") {
-    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples}) CHECK(thread_map_from(to_string(map)) == map);
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::classes})
+        CHECK(thread_map_from(to_string(map)) == map);
     CHECK_THROWS_AS(thread_map_from("tiles"), UsageError);
-    CHECK_THROWS_WITH(thread_map_from(""), Catch::Contains("tile, samples") && !Catch::Contains("\n"));
+    CHECK_THROWS_WITH(thread_map_from(""), Catch::Contains("tile, samples, classes") && !Catch::Contains("\n"));
 }

@@ -3,10 +3,14 @@
 // number of points, so a net stays a net, and each point alone is uniform over the keys.
 //
 // Hash-based: S. Laine, T. Karras, "Stratified sampling for stochastic transparency", CGF 30(4), 2011; B. Burley,
-// "Practical hash-based Owen scrambling", JCGT 9(4), 2020. With the bits reversed, adding a key and x ^= x * even let
-// each bit depend on lower ones only. The multipliers are those of N. Vegdahl, "Building a better LK hash", 2021, which
-// mixes the deeper levels better than Burley's; both key words are random here, so that adding the first makes each
-// point exactly uniform.
+// "Practical hash-based Owen scrambling", JCGT 9(4), 2020. With the bits reversed, adding a key, odd factors and
+// x ^= x * even let each bit depend on lower ones only. The fixed multipliers are those of N. Vegdahl, "Building a
+// better LK hash", 2021. Three key words are random here: adding the first makes each point alone exactly uniform. A
+// few key bits decide the upper levels, so there are fewer trees than Owen has: 2^10 instead of 2^15 for the first four
+// levels.
+//
+// Trap: the four lowest bits of pcg4d's words, which would decide the first levels, depend on each other between
+// dimensions of a pixel (chi-square 9403 for 255 degrees of freedom). They are folded with the upper half.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +27,14 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return ((x & 0x55555555U) << 1) | ((x >> 1) & 0x55555555U);
 }
 
-/// Owen-scrambled x, a bijection of x. Its top k bits depend on the top k bits of x only. Uses words 0 and 1 of the
-/// key.
+/// Owen-scrambled x, a bijection of x. Its top k bits depend on the top k bits of x only. Uses words 0 to 2 of the key.
 constexpr std::uint32_t owen_scramble(std::uint32_t x, const HashWords& key) {
+    const auto folded = [&key](unsigned word) { return key[word] ^ (key[word] >> 16); };
     x = reverse_bits(x);
     x ^= x * 0x3D20ADEAU;
-    x += key[0];
-    x *= key[1] | 1U;
+    x += folded(0);
+    x *= folded(1) | 1U;
+    x ^= x * (folded(2) << 1);
     x ^= x * 0x05526C56U;
     x ^= x * 0x53A22864U;
     return reverse_bits(x);

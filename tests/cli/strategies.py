@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Every sequence with every strategy from outside: what a trace says about it, and which pairs are refused."""
+from support import LAUNCHES, SCENE, ProgramTest, main
+
+CAPTURE = ["capture", *SCENE, *LAUNCHES, "--bounces", "1", "--spp", "64", "-o", "trace.rct"]
+RENDER = ["render", *SCENE, "--resolution", "32x16", "--bounces", "1", "--spp", "4"]
+
+
+class Strategies(ProgramTest):
+    def recorded(self, *options):
+        self.succeeds(*CAPTURE, *options)
+        return self.succeeds("info", "trace.rct", "--json").json
+
+    def names(self, topic):
+        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json[topic]]
+
+    def test_every_pair_is_captured_or_refused_with_a_reason(self):
+        refused = 0
+        for sequence in self.names("sequences"):
+            for strategy in self.names("strategies"):
+                with self.subTest(f"{sequence} x {strategy}"):
+                    result = self.run_program(*CAPTURE, "--sequence", sequence, "--strategy", strategy,
+                                              "--bounces", "0")
+                    if result.code == 0:
+                        continue
+                    refused += 1
+                    self.assertEqual(result.code, 2, result)
+                    self.assertIn(f"'{sequence}'", result.stderr)
+                    self.assertIn("net in base 2", result.stderr)
+                    self.assertEqual(len(result.stderr.splitlines()), 1, result)
+        self.assertEqual(refused, 4 * 4 + 2)
+
+    def test_every_strategy_and_every_sequence_renders(self):
+        for strategy in self.names("strategies"):
+            self.warns(*RENDER, "--strategy", strategy, "-o", "a.png")
+        for sequence in self.names("sequences"):
+            self.succeeds(*RENDER, "--sequence", sequence, "-o", "a.png")
+
+    def test_a_trace_says_the_effective_parameters(self):
+        for options, words in [(["--strategy", "scrambling-distance"], "mu=cycles(0.5)"),
+                               (["--strategy", "scrambling-distance", "--mu", "0.2"], "mu=0.2"),
+                               (["--strategy", "interleaved", "--interleave", "5"], "m=5"),
+                               (["--strategy", "net-micro-jitter", "--sequence", "sobol-owen-4d"], "k=1 mu=0.5"),
+                               (["--strategy", "net-micro-jitter-fast", "--sequence", "pmj02"], "k=3 mu=0.125 m=8"),
+                               (["--k", "discrepancy", "--sequence", "r2"], "K=discrepancy("),
+                               (["--s", "full", "--k", "0.9"], "K=0.9 s=full(")]:
+            self.assertIn(words, str(self.recorded(*options)), options)
+
+    def test_strategies_with_pixel_classes_choose_the_thread_map_classes_unless_told_otherwise(self):
+        for options, thread_map in [([], "tile"), (["--strategy", "interleaved"], "classes"),
+                                    (["--strategy", "net-micro-jitter-fast"], "classes"),
+                                    (["--strategy", "interleaved", "--thread-map", "tile"], "tile"),
+                                    (["--strategy", "coherent", "--thread-map", "classes"], "classes")]:
+            text = str(self.recorded(*options))
+            self.assertIn(f"--thread-map {thread_map} ", text)
+
+    def test_the_command_of_a_trace_makes_the_same_trace_again(self):
+        command = None
+        def find(value):
+            nonlocal command
+            if isinstance(value, dict):
+                for inner in value.values():
+                    find(inner)
+            elif isinstance(value, str) and value.startswith("raycache capture "):
+                command = value
+        find(self.recorded("--strategy", "interleaved", "--interleave", "3", "--seed", "7"))
+        self.assertIsNotNone(command)
+        self.succeeds(*command.split()[1:], "-o", "again.rct")
+        self.assertEqual(self.path("again.rct").read_bytes(), self.path("trace.rct").read_bytes())
+
+    def test_bad_settings_are_refused_in_one_line(self):
+        for options, words in [(["--strategy", "interleaved", "--interleave", "0"], "1 to 256"),
+                               (["--strategy", "interleaved", "--interleave", "49"], "64x48"),
+                               (["--strategy", "uniform-jitter", "--spp", "100"], "64 or 128"),
+                               (["--sequence", "pmj02", "--spp", "65537"], "65536"),
+                               (["--k", "discrepancy", "--spp", "100000"], "65536"),
+                               (["--k", "-1"], "K"), (["--k", "nan"], "K"), (["--k", "big"], "--k"),
+                               (["--s", "0"], "s"), (["--s", "-1"], "--s"), (["--s", "some"], "--s"),
+                               (["--mu", "-0.1"], "mu"), (["--mu", "nan"], "mu"), (["--mu", "wide"], "--mu"),
+                               (["--sequence", "halton", "--strategy", "owen"], "sobol-owen-02")]:
+            arguments = list(CAPTURE)
+            if "--spp" in options:
+                arguments[arguments.index("--spp"):arguments.index("--spp") + 2] = []
+            self.refuses(2, *arguments, *options, mentions=[words])
+
+    def test_mu_above_1_is_clamped_with_a_warning(self):
+        for strategy in ("micro-jitter", "scrambling-distance"):
+            result = self.warns(*CAPTURE, "--strategy", strategy, "--mu", "1.5")
+            self.assertIn("mu 1.5 clamped to 1", result.stderr)
+
+
+if __name__ == "__main__":
+    main()
