@@ -64,9 +64,9 @@ std::string histogram(const UnionDensity& density) {
     for (const Line& line : lines) {
         const std::string range =
             line.low == line.high ? fmt::format("{:.3f}", line.low) : fmt::format("{:.3f}-{:.3f}", line.low, line.high);
-        text += fmt::format("{:<14}  {:>6.2f}  {}\n", range, 100 * line.area,
-                            std::string(static_cast<std::size_t>(std::lround(40 * line.area / most)), '#'));
-        if (text[text.size() - 2] == ' ') text.replace(text.find_last_not_of(" \n") + 1, std::string::npos, "\n");
+        const auto length = static_cast<std::size_t>(std::lround(40 * line.area / most));
+        const std::string bar = length == 0 ? std::string() : "  " + std::string(length, '#');
+        text += fmt::format("{:<14}  {:>6.2f}{}\n", range, 100 * line.area, bar);
     }
     return text;
 }
