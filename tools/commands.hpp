@@ -18,6 +18,7 @@ void add_quality(CLI::App&);
 void add_sweep(CLI::App&);
 void add_export(CLI::App&);
 void add_import(CLI::App&);
+void add_samples(CLI::App&);
 void add_list(CLI::App&);
 void add_samples(CLI::App&);
 

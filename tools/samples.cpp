@@ -1,0 +1,133 @@
+// raycache samples: the points that all pixels together take, their holes and density, and the tables about them.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "tools/options.hpp"
+#include "tools/samples_picture.hpp"
+#include "tools/samples_tables.hpp"
+#include "tools/samples_union.hpp"
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    std::string sequence = "halton", strategy = "micro-jitter";
+    std::uint64_t spp = 128, copies = 150;
+    std::vector<std::uint32_t> dimensions{0, 1};
+    SamplingOptions sampling;
+    std::string csv, picture, figure2, table;
+    bool json = false;
+    ThreadOptions threads;
+};
+
+SampleUnion make(const Options& o, const std::string& strategy, const std::string& k) {
+    SamplingOptions sampling = o.sampling;
+    if (!k.empty()) {
+        sampling.k = k;
+        sampling.s = "2";
+        sampling.mu.clear();
+    }
+    return make_sample_union(sampling.strategy(o.sequence, strategy, o.spp), o.dimensions[0], o.dimensions[1],
+                             o.copies);
+}
+
+void check_picture_name(const char* option, const std::string& path) {
+    if (!path.empty() && !path.ends_with(".png"))
+        throw UsageError(fmt::format("{} '{}'; expected a file name that ends in .png", option, path));
+}
+
+std::string subject(const Options& o) {
+    return fmt::format("{} dimensions {},{}, N {}, {} copies", o.sequence, o.dimensions[0], o.dimensions[1], o.spp,
+                       o.copies);
+}
+
+/// K below the hole-free one by half leaves holes; the paper's own K comes from the star discrepancy.
+void write_figure2(const Options& o) {
+    const SampleUnion coherent = make(o, "coherent", "");
+    const auto from_discrepancy = coherent.k_from_discrepancy();
+    if (!from_discrepancy)
+        throw UsageError(
+            fmt::format("--figure2 with --spp {}; expected at most {}", o.spp, tracer::max_star_discrepancy_points));
+    const double small = coherent.hole_free_k / 2;
+    const SampleUnion narrow = make(o, "micro-jitter", fmt::format("{}", small)),
+                      right = make(o, "micro-jitter", fmt::format("{}", *from_discrepancy)),
+                      rotated = make(o, "cranley-patterson", "");
+    tracer::write_screen_image(
+        o.figure2, draw_samples(subject(o), {{"coherent", &coherent},
+                                             {fmt::format("micro-jitter, mu too small, K {:.2f}", small), &narrow},
+                                             {fmt::format("micro-jitter, K {:.2f}", *from_discrepancy), &right},
+                                             {"cranley-patterson", &rotated}}));
+}
+
+void run(const Options& o) {
+    const auto limit = o.threads.apply();
+    if (!o.table.empty()) {
+        if (!o.csv.empty() || !o.picture.empty() || !o.figure2.empty())
+            throw UsageError("--table with --csv, --picture or --figure2; expected --table NAME [--json] alone");
+        const SamplesTable table = make_samples_table(o.table);
+        print(o.json ? table.json() : table.text());
+        return;
+    }
+    check_picture_name("--picture", o.picture);
+    check_picture_name("--figure2", o.figure2);
+    const SampleUnion samples = make(o, o.strategy, "");
+    if (!samples.warning.empty()) warn(samples.warning);
+    if (!o.csv.empty()) {
+        traces::OutputFile file(o.csv);
+        file.write(to_csv(samples));
+        file.commit();
+    }
+    if (!o.picture.empty())
+        tracer::write_screen_image(
+            o.picture,
+            draw_samples(subject(o),
+                         {{o.strategy + (samples.parameters.empty() ? "" : " ") + samples.parameters, &samples}}));
+    if (!o.figure2.empty()) write_figure2(o);
+    print(o.json ? to_json(samples) : to_text(samples));
+}
+
+}  // namespace
+
+void add_samples(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "samples", "Show the points of all pixels in two dimensions of a strategy: holes, density, picture");
+    command->add_option("--sequence", o->sequence, "low-discrepancy sequence (see 'raycache list sequences')")
+        ->capture_default_str();
+    command->add_option("--strategy", o->strategy, "decorrelation (see 'raycache list strategies')")
+        ->capture_default_str();
+    command->add_option("--spp", o->spp, "N, points of one pixel")->capture_default_str();
+    command->add_option("--copies", o->copies, "how many pixels")->capture_default_str();
+    command->add_option("--dimensions", o->dimensions, "A,B: which two dimensions")
+        ->delimiter(',')
+        ->expected(2)
+        ->default_str("0,1");
+    o->sampling.add_strategy(*command);
+    command->add_option("--csv", o->csv, "write all points: copy, sample, x, y")->type_name("FILE");
+    command->add_option("--picture", o->picture, "draw all points")->type_name("FILE.png");
+    command
+        ->add_option("--figure2", o->figure2,
+                     "draw four panels: coherent, mu too small, mu from the star discrepancy, cranley-patterson")
+        ->type_name("FILE.png");
+    command
+        ->add_option("--table", o->table,
+                     "instead of one strategy, a table of docs/sampling.md: " + samples_table_names())
+        ->type_name("NAME");
+    command->add_flag("--json", o->json, "print JSON");
+    o->threads.add(*command);
+    command->footer(
+        "Examples:\n"
+        "  raycache samples --sequence halton --strategy micro-jitter --spp 128 --copies 150 --k 1 --picture "
+        "holes.png\n"
+        "  raycache samples --sequence sobol --spp 1024 --dimensions 2,3 --mu 0.05 --csv points.csv --json\n"
+        "  raycache samples --figure2 figure2.png\n"
+        "  raycache samples --table bias");
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools
