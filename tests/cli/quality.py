@@ -10,7 +10,8 @@ import sys
 from support import ROOT, SCENE, ProgramTest, main
 
 CORNELL = pathlib.Path(os.environ.get("RAYCACHE_SCENES") or ROOT.parent / "shared/scenes") / "cornell_box.glb"
-SMALL = {"--resolution": "32x32", "--spp": "8", "--reference-spp": "64", "--bounces": "1"}
+SMALL = {"--resolution": "32x32", "--spp": "8", "--bounces": "1", "--reference-spp": "256",
+         "--reference-strategy": "cranley-patterson"}
 GPU = ["--gpu", "gtx-980-ti", "--trace-samples", "2"]
 # A scene with a light of its own, and no warning; the courtyard where the real scenes are not there.
 NAMED = [str(CORNELL)] if CORNELL.exists() else SCENE
@@ -41,7 +42,7 @@ class Quality(QualityTest):
         lines = text.splitlines()
         self.assertIn("R8", lines[0])
         self.assertEqual([line.split()[0] for line in lines[2:4]], ["coherent", "cranley-patterson"])
-        for words in ("R8: ", "z: ", "reference of 64 samples per pixel"):
+        for words in ("R8: ", "z: ", "reference of 256 samples per pixel"):
             self.assertIn(words, text)
 
     def test_coherent_errors_are_shared_and_those_of_random_numbers_are_not(self):

@@ -149,8 +149,8 @@ ErrorMeasures measure_errors(std::span<const Image> seeds, const Reference& refe
     m.reference_rmse = std::sqrt(reference_square / static_cast<double>(pixels));
 
     // Bias.
-    double means = 0, variances_pixels = 0, variances_seeds = 0, picture_variance_pixels = 0;
-    double picture_variance_reference = 0;
+    double means = 0, variances_seeds = 0, picture_variance_pixels = 0, picture_variance_reference = 0;
+    double scores = 0, scored_tiles = 0;  // sum of m_t^2 / v_t
     for (std::size_t t = 0; t < tile_count; ++t) {
         if (!present[t]) continue;
         const double n = own[t].pixels, reference_variance = own[t].luminance_square / (n * n);
@@ -163,14 +163,17 @@ ErrorMeasures measure_errors(std::span<const Image> seeds, const Reference& refe
         means += mean * mean;
         const double pixel_variance =
             std::max(0.0, squares - own[t].luminance_square) / (n * n * count) + reference_variance;
-        variances_pixels += pixel_variance;
+        if (pixel_variance > 0) {
+            scores += mean * mean / pixel_variance;
+            scored_tiles += 1;
+        }
         if (seeds.size() > 1) variances_seeds += spread / (count - 1) / count + reference_variance;
         const double share = n / static_cast<double>(pixels);
         m.mean_error += share * mean;
         picture_variance_pixels += share * share * pixel_variance;
         picture_variance_reference += share * share * reference_variance;
     }
-    m.z_pixels = std::sqrt(means / variances_pixels);
+    m.z_pixels = std::sqrt(scores / scored_tiles);  // NaN for no tile with an error
     m.mean_error_deviation = std::sqrt(picture_variance_pixels);
     if (seeds.size() > 1) {
         m.z_seeds = std::sqrt(means / variances_seeds);

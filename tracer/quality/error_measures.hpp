@@ -34,10 +34,13 @@ struct ErrorMeasures {
     double mean_error;           ///< luminance, over the whole picture, signed
     double
         mean_error_deviation;  ///< standard error of mean_error: pixels independent; from the seeds where >= 2 differ
-    /// Bias test: root of sum_t m_t^2 / sum_t v_t over the tiles t of a 4 x 4 grid, m_t: mean error (luminance, over
-    /// seeds), v_t: its variance. Without bias about 1; above 1.4, once in about a hundred pictures. z_pixels: v_t from
-    /// the mean squared error of the tile's pixels, taken as independent of each other. Errors that neighbours share
-    /// raise it as a bias does.
+    /// Bias test over the tiles t of a 4 x 4 grid; m_t: a tile's mean error (luminance, over seeds), v_t: its variance.
+    /// z_pixels: root of the mean of m_t^2 / v_t, v_t from the mean squared error of the tile's pixels, taken as
+    /// independent of each other. Without bias about 1, above 1.4 in about one picture of a hundred (chi-square, 16
+    /// degrees of freedom). Errors that neighbours share raise it as a bias does. NaN where there is no error.
+    /// z_seeds: root of (sum of m_t^2 / sum of v_t), v_t from the spread of the tile's mean error between seeds, which
+    /// assumes nothing about pixels: bias alone raises it. Few tiles may decide it, so it scatters more. Where seeds do
+    /// not matter (coherent), all error is bias. Absent for one seed.
     double z_pixels;
     /// z_seeds: v_t from the spread of the tile's mean error between seeds, which assumes nothing about pixels: bias
     /// alone raises it. Where seeds do not matter (coherent), all error is bias. Absent for one seed.
