@@ -96,7 +96,9 @@ struct Row {
     unsigned s = 2;
 
     StrategySettings settings(std::uint32_t n) const {
-        StrategySettings settings{sequence, decorrelation, {}};
+        StrategySettings settings;
+        settings.sequence = sequence;
+        settings.decorrelation = decorrelation;
         settings.parameters.spp = n;
         settings.parameters.seed = 1;
         settings.parameters.k = k;
