@@ -46,13 +46,12 @@ class Quality(QualityTest):
             self.assertIn(words, text)
 
     def test_coherent_errors_are_shared_and_those_of_random_numbers_are_not(self):
-        rows = {r["strategy"]: r for r in self.quality("--json").json["rows"]}
+        result = self.quality("--json", "--resolution", "64x64", "--spp", "64", "--bounces", "3").json
+        rows = {r["strategy"]: r for r in result["rows"]}
         self.assertEqual(set(rows), {"coherent", "cranley-patterson", "micro-jitter", "random"})
-        self.assertGreater(rows["coherent"]["r8"]["value"], 8)
-        self.assertGreater(rows["coherent"]["z_pixels"], 2)
         for name in ("cranley-patterson", "random"):
-            self.assertLess(rows[name]["r8"]["value"], 4)
-            self.assertLess(rows[name]["z_pixels"], 2.5)
+            self.assertGreater(rows["coherent"]["r8"]["value"], 2 * rows[name]["r8"]["value"])
+            self.assertGreater(rows["coherent"]["z_pixels"], rows[name]["z_pixels"])
         self.assertEqual(rows["cranley-patterson"]["rmse_ratio"], 1)
         self.assertLess(rows["cranley-patterson"]["rmse"]["value"], rows["random"]["rmse"]["value"])
 
@@ -170,10 +169,13 @@ class Sweep(QualityTest):
     def test_the_plot_is_drawn_and_bad_input_to_it_refused(self):
         self.path("sweep.json").write_bytes(self.sweep("--json").stdout)
         plot = [sys.executable, ROOT / "tools/plot_sweep"]
-        subprocess.run([*plot, "sweep.json", "-o", "sweep.png"], cwd=self.folder, check=True, timeout=120)
+        # matplotlib would look through all fonts again for a cache folder of its own.
+        usual = {name: value for name, value in os.environ.items() if name != "XDG_CACHE_HOME"}
+        subprocess.run([*plot, "sweep.json", "-o", "sweep.png"], cwd=self.folder, env=usual, check=True, timeout=300)
         self.assertEqual(self.path("sweep.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.path("bad.json").write_text("{}")
-        done = subprocess.run([*plot, "bad.json", "-o", "bad.png"], cwd=self.folder, capture_output=True, timeout=120, check=False)
+        done = subprocess.run([*plot, "bad.json", "-o", "bad.png"], cwd=self.folder, env=usual, capture_output=True,
+                              timeout=300, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn(b"bad.json", done.stderr)
         self.assertFalse(self.path("bad.png").exists())
