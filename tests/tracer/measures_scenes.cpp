@@ -60,7 +60,9 @@ TEST_CASE("measures: every test scene's integral equals a fine quadrature") {
             INFO(scene->name() << " u " << u);
             CHECK(sum / (side * side) == Approx(scene->integral(u, 1 - u)).margin(1.5e-3));
         }
-    const SamplingStrategy points({"sobol-owen-4d", "coherent", {.spp = 1U << 18}}, 4);
+    StrategySettings settings{"sobol-owen-4d", "coherent", {}};
+    settings.parameters.spp = 1U << 18;
+    const SamplingStrategy points(settings, 4);
     std::vector<double> sums(edges_4d().size());
     for (std::uint32_t i = 0; i < 1U << 18; ++i) {
         const auto base = points.base_point(i);
