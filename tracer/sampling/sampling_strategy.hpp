@@ -20,7 +20,7 @@ struct StrategySettings {
     std::string decorrelation = "micro-jitter";
     DecorrelationSettings parameters;
     /// q: dimensions 2q and 2q + 1 get what `random` would give them, to see what error a pair of dimensions causes.
-    std::optional<std::uint32_t> independent_pair;
+    std::optional<std::uint32_t> independent_pair{};
 };
 
 class SamplingStrategy {
