@@ -60,8 +60,7 @@ QualityReport QualityOptions::measure(QualityRequest request) const {
     const tracer::SamplingStrategy valid(reference_settings,
                                          tracer::path_dimensions(request.cases.front().paths.bounces));
     std::set<std::string> warnings;
-    for (const auto& c : request.cases)
-        warnings.insert(settings_warning(c));
+    for (const auto& c : request.cases) warnings.insert(settings_warning(c));
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
 

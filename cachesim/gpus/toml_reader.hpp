@@ -46,8 +46,8 @@ public:
         }
     }
 
-    /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". VALUE is TOML, but
-    /// a word needs no quotes. Throws UsageError if it is neither.
+    /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". VALUE is TOML,
+    /// but a word needs no quotes. Throws UsageError if it is neither.
     void change(const std::string& assignment) {
         toml::table given;
         const auto parse = [&](const std::string& text) {

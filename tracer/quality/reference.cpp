@@ -48,10 +48,11 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     std::string key = fmt::format(
         "raycache reference 2; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
         "pixels; "
-        "{} bounces, {} reflections, {} transmissions, lights {}{}; {} {}, {} samples per pixel, blocks of {}, seed {:x}",
+        "{} bounces, {} reflections, {} transmissions, lights {}{}; {} {}, {} samples per pixel, blocks of {}, seed "
+        "{:x}",
         scene.hash, scene.triangle_count(), text(scene.sky), text(camera.eye), text(camera.forward), text(camera.up),
-        camera.vertical_fov, settings.width, settings.height, settings.paths.bounces,
-        settings.paths.bounces_diffuse, settings.paths.bounces_transmission, to_string(settings.paths.lights),
+        camera.vertical_fov, settings.width, settings.height, settings.paths.bounces, settings.paths.bounces_diffuse,
+        settings.paths.bounces_transmission, to_string(settings.paths.lights),
         settings.paths.russian_roulette ? ", roulette" : "", settings.decorrelation, settings.sequence, settings.spp,
         block, first_seed);
     if (scene.sun)
