@@ -89,7 +89,8 @@ public:
         if (height > 0) {
             z = (weight[0] * p[0][2] + weight[1] * p[1][2] + weight[2] * p[2][2]) / area;
             z = std::clamp(z, z_low, z_high);
-            move *= std::min(1.0, weight_factor * out.inside_error / height);
+            const double share = weight_factor * out.inside_error / height;
+            move *= share < 0.5 ? share / (1 - share) : 1;  // the area that divides is as wrong as the weights
         }
         out.t = z / length_;
         out.t_error = (depth_ulps * ulp * reach + move) / length_;

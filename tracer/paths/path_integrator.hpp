@@ -241,12 +241,12 @@ private:
         return {number(lane, dimension), number(lane, dimension + 1)};
     }
 
-    /// Ends before the light's plane, to which the ray's start may have moved nearer.
+    /// Ends before the light's plane, to which the ray's start may have moved nearer, or beyond it.
     static Ray shadow_ray(const Surface& s, const LightSample& light) {
         constexpr float short_of_light = 0.9999F;
         const Vec3 origin = s.leave(light.direction);
         const float nearer = dot(origin - s.position, light.normal) / dot(light.direction, light.normal);
-        return {origin, light.direction, 0, (light.distance - nearer) * short_of_light};
+        return {origin, light.direction, 0, std::max(0.0F, (light.distance - nearer) * short_of_light)};
     }
     /// Share of the technique that has density `mine` where another has `other`, exponent 2 (Veach & Guibas 1995).
     static float power_heuristic(float mine, float other) {
