@@ -155,8 +155,6 @@ void check(const QualityRequest& request) {
         throw UsageError(fmt::format("--repeats {}; expected 1 to 1024", request.repeats));
     if (request.cases.empty()) throw UsageError("no strategy; expected at least one --strategy");
     for (const auto& c : request.cases) {
-        if (c.paths.bounces > tracer::max_bounces)
-            throw UsageError(fmt::format("--bounces {}; expected 0 to {}", c.paths.bounces, tracer::max_bounces));
         const tracer::SamplingStrategy strategy(c.strategy, dimensions_of(c));
         tracer::check_seeds(c.strategy.parameters.seed, request.repeats);
     }

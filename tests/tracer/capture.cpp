@@ -146,7 +146,7 @@ TEST_CASE("capture: settings out of range are refused in one line") {
     };
     refused([](CaptureSettings& s) { s.width = 0; }, "width of 0");
     refused([](CaptureSettings& s) { s.height = 16385; }, "height of 16385");
-    refused([](CaptureSettings& s) { s.paths.bounces = 65; }, "65 bounces");
+    refused([](CaptureSettings& s) { s.paths.bounces = 65; }, "--bounces 65");
     refused([](CaptureSettings& s) { s.strategy.parameters.spp = 0; }, "");
     refused([](CaptureSettings& s) { s.trace_samples = 0; }, "");
     refused([](CaptureSettings& s) { s.strategy.sequence = "none"; }, "sobol");

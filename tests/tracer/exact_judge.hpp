@@ -26,9 +26,12 @@ namespace raycache::tracer::test {
 /// coordinates. Woop's shear rounds five times per coordinate, sqrt(2) * 5 < 8.
 inline constexpr double lateral_ulps = 8;
 /// Bound of the error along the ray: `depth_ulps` * 2^-24 * the same distance, plus what the lateral error does to the
-/// barycentric weights of a tilted triangle: at most `weight_factor` * lateral error / smallest height seen along the
-/// ray, times the triangle's extent along the ray.
-inline constexpr double depth_ulps = 8, weight_factor = 3;
+/// barycentric weights of a tilted triangle, times the triangle's extent in depth. A weight is the cross product of two
+/// vectors a and b from the ray to vertices, so it is wrong by (|a| + |b|) * lateral error, the three together by at
+/// most 4 * the longest edge * that; divided by the area: 4 * lateral error / smallest height; rounding the products
+/// adds less than 0.5. Depth is the distance along the ray, or, where a method shears the triangle along the main axis
+/// of the direction, along that axis: the longer of the two.
+inline constexpr double depth_ulps = 8, weight_factor = 4.5;
 inline constexpr double ulp = 0x1p-24;
 
 struct Crossing {
@@ -49,6 +52,8 @@ public:
             direction_[i] = ray.direction[i];
         }
         length_ = std::sqrt(dot(direction_, direction_));
+        for (int i = 1; i < 3; ++i)
+            if (std::fabs(direction_[i]) > std::fabs(direction_[main_axis_])) main_axis_ = i;
         const D3 d = scaled(direction_, 1 / length_);
         const D3 axis = std::fabs(d[0]) < 0.5 ? D3{1, 0, 0} : D3{0, 1, 0};
         side_[0] = cross(d, axis);
@@ -59,7 +64,7 @@ public:
 
     Crossing crossing(const Scene& scene, std::uint32_t triangle) const {
         D3 p[3];  // vertices in the ray's frame: across, across, along
-        double reach = 0, z_low = 1e300, z_high = -1e300;
+        double reach = 0, z_low = 1e300, z_high = -1e300, axis_low = 1e300, axis_high = -1e300;
         for (std::uint32_t c = 0; c < 3; ++c) {
             const Vec3 v = corner(scene, triangle, c);
             const D3 way{v.x - origin_[0], v.y - origin_[1], v.z - origin_[2]};
@@ -67,6 +72,8 @@ public:
             for (int i = 0; i < 3; ++i) p[c][i] = dot(way, side_[i]);
             z_low = std::min(z_low, p[c][2]);
             z_high = std::max(z_high, p[c][2]);
+            axis_low = std::min(axis_low, way[main_axis_]);
+            axis_high = std::max(axis_high, way[main_axis_]);
         }
         Crossing out;
         out.triangle = triangle;
@@ -85,7 +92,7 @@ public:
             out.inside = std::min(out.inside, edge[i] > 0 ? sign * weight[i] / edge[i]
                                                           : -std::hypot(p[(i + 1) % 3][0], p[(i + 1) % 3][1]));
         if (out.inside < 0) out.inside = -outside(p);
-        double z = z_low, move = z_high - z_low;
+        double z = z_low, move = std::max(z_high - z_low, (axis_high - axis_low) * length_ / std::fabs(direction_[main_axis_]));
         if (height > 0) {
             z = (weight[0] * p[0][2] + weight[1] * p[1][2] + weight[2] * p[2][2]) / area;
             z = std::clamp(z, z_low, z_high);
@@ -144,6 +151,7 @@ private:
     Ray ray_;
     D3 origin_, direction_, side_[3];
     double length_;
+    int main_axis_ = 0;  ///< along which the direction is largest
 };
 
 /// Every triangle that the ray perhaps crosses between t_min and t_max.

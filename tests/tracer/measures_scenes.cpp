@@ -92,7 +92,7 @@ TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its un
     // f = 1 where x < a and y < b: the integral of f * density is the mean over points of the share of their boxes in
     // that rectangle, wrapped.
     constexpr std::uint32_t n = 16, pixels = 200'000;
-    constexpr double a = 0.57, b = 0.41;
+    constexpr double a = 0.62, b = 0.68;
     StrategySettings settings{"sobol", "micro-jitter", {}};
     settings.parameters.spp = n;
     settings.parameters.k = 1;

@@ -27,13 +27,13 @@ std::string to_string(LightSampling lights) {
 }
 
 void check(const PathSettings& settings) {
-    const auto limit = [](std::uint32_t bounces, const char* kind) {
+    const auto limit = [](std::uint32_t bounces, const char* option) {
         if (bounces > max_bounces)
-            throw UsageError(fmt::format("{} {}bounces; expected 0 to {}", bounces, kind, max_bounces));
+            throw UsageError(fmt::format("{} {}: too many bounces; expected 0 to {}", option, bounces, max_bounces));
     };
-    limit(settings.bounces, "");
-    limit(settings.bounces_diffuse, "diffuse ");
-    limit(settings.bounces_transmission, "transmission ");
+    limit(settings.bounces, "--bounces");
+    limit(settings.bounces_diffuse, "--bounces-diffuse");
+    limit(settings.bounces_transmission, "--bounces-transmission");
 }
 
 }  // namespace raycache::tracer
