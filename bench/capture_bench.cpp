@@ -1,5 +1,5 @@
-// Capture (traversal, shading, encoding and writing the trace) and rendering (traversal and shading alone) against
-// Embree's rtcIntersect1 / rtcOccluded1 on the same rays, in turn within one repetition, so that a machine that slows
+// Capture (traversal, shading, encoding and writing the trace) and rendering (Embree's traversal, and shading) against
+// Embree's rtcIntersect1 / rtcOccluded1 alone on the same rays, in turn within one repetition, so that a machine that slows
 // down slows both.
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
@@ -10,9 +10,8 @@
 #include <filesystem>
 
 #include "bench/workload.hpp"
-#include "tracer/bvh/embree_reference.hpp"
-#include "tracer/simt/recorder.hpp"
-#include "tracer/simt/warp_traversal.hpp"
+#include "tracer/bvh/embree_scene.hpp"
+#include "tracer/paths/embree_traversal.hpp"
 
 namespace raycache::bench {
 namespace {
@@ -27,7 +26,7 @@ struct LoggedRay {
 /// Lets the integrator run over Embree and keeps the rays it asked for.
 class RayLogger {
 public:
-    RayLogger(const EmbreeReference& embree, std::vector<LoggedRay>& log) : embree_(embree), log_(log) {}
+    RayLogger(const EmbreeScene& embree, std::vector<LoggedRay>& log) : embree_(embree), log_(log) {}
 
     void closest(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays, Hit* hits) {
         for (; mask != 0; mask &= mask - 1) {
@@ -48,7 +47,7 @@ public:
     void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) {}
 
 private:
-    const EmbreeReference& embree_;
+    const EmbreeScene& embree_;
     std::vector<LoggedRay>& log_;
 };
 
@@ -63,7 +62,7 @@ void trace_launch(const Capture& capture, Traversal& traversal) {
         integrator.trace(capture.lane_jobs(0, warp, jobs), jobs, radiance);
 }
 
-std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeReference& embree) {
+std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeScene& embree) {
     std::vector<LoggedRay> log;
     RayLogger logger(embree, log);
     trace_launch(capture, logger);
@@ -71,7 +70,7 @@ std::vector<LoggedRay> rays_of(const Capture& capture, const EmbreeReference& em
 }
 
 /// Seconds of this thread that Embree takes for the rays.
-double embree_seconds(const EmbreeReference& embree, const std::vector<LoggedRay>& log) {
+double embree_seconds(const EmbreeScene& embree, const std::vector<LoggedRay>& log) {
     const double start = thread_seconds();
     std::uint64_t found = 0;
     for (const LoggedRay& r : log) found += r.shadow ? embree.occluded(r.ray) : embree.intersect(r.ray).found();
@@ -86,7 +85,7 @@ void count_rates(benchmark::State& state, double our_rate, double their_rate) {
 }
 
 void capture_against_embree(benchmark::State& state, const char* strategy) {
-    static const EmbreeReference embree(scene().scene());
+    static const EmbreeScene embree(scene().scene());
     const auto capture = make_capture(strategy);
     const std::vector<LoggedRay> log = rays_of(*capture, embree);
     const auto path = std::filesystem::temp_directory_path() / ("raycache_bench_" + std::to_string(getpid()) + ".rct");
@@ -109,12 +108,11 @@ void capture_against_embree(benchmark::State& state, const char* strategy) {
 }
 
 void render_against_embree(benchmark::State& state, const char* strategy) {
-    static const EmbreeReference embree(scene().scene());
+    const EmbreeScene& embree = scene().embree();
     const auto capture = make_capture(strategy);
     const std::vector<LoggedRay> log = rays_of(*capture, embree);
-    NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene().scene(), scene().bvh(), scene().texels(), recorder);
-    const auto rays = static_cast<double>(log.size());  // ours are the same, up to ties between hits
+    EmbreeTraversal traversal(embree);
+    const auto rays = static_cast<double>(log.size());
     for (auto _ : state) {
         const double start = thread_seconds();
         trace_launch(*capture, traversal);

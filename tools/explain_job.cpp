@@ -10,6 +10,7 @@
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
+#include "cachesim/report/pairing.hpp"
 #include "tools/console.hpp"
 #include "tools/heat_map.hpp"
 #include "traces/error.hpp"
@@ -42,7 +43,7 @@ void check_comparable(const ExplainRequest& request) {
     same("camera", a.camera, b.camera);
     same("resolution", fmt::format("{}x{}", a.width, a.height), fmt::format("{}x{}", b.width, b.height));
     same("number of bounces", a.bounces, b.bounces);
-    same("thread map", a.thread_map, b.thread_map);
+    if (!cachesim::same_work_per_launch(a.thread_map, b.thread_map)) same("thread map", a.thread_map, b.thread_map);
     if (base.launches == other.launches) return;
     const bool common = std::any_of(base.launches.begin(), base.launches.end(), [&](std::uint32_t sample) {
         return std::find(other.launches.begin(), other.launches.end(), sample) != other.launches.end();

@@ -14,13 +14,13 @@ namespace raycache::tools {
 
 namespace {
 
-tracer::LaunchGrid grid_of(const traces::Provenance& p) {
-    return {tracer::thread_map_from(p.thread_map), p.width, p.height, p.spp};
+std::optional<tracer::LaunchGrid> grid_of(const traces::Provenance& p) {
+    return tracer::LaunchGrid::from_name(p.thread_map, p.width, p.height, p.spp);
 }
 
 /// Sample indices of a pixel in all launches of a trace.
 std::uint64_t samples_of(const traces::Header& header) {
-    const std::uint64_t spp = header.provenance.spp, per_launch = grid_of(header.provenance).samples_per_launch();
+    const std::uint64_t spp = header.provenance.spp, per_launch = grid_of(header.provenance)->samples_per_launch();
     std::uint64_t samples = 0;
     for (const std::uint64_t first : header.launches) samples += first < spp ? std::min(per_launch, spp - first) : 0;
     return samples;
@@ -31,18 +31,17 @@ std::uint64_t samples_of(const traces::Header& header) {
 cachesim::LanePixels lane_pixels(const traces::Header& header, const std::string& name) {
     const traces::Provenance& p = header.provenance;
     constexpr std::uint32_t largest = 16384;  // pixels on a side of what raycache captures
-    const bool known = (p.thread_map == "tile" || p.thread_map == "samples") && p.width > 0 && p.height > 0 &&
-                       p.width <= largest && p.height <= largest;
-    if (!known || grid_of(p).warps() != header.warps_per_launch)
+    const bool possible = p.width > 0 && p.height > 0 && p.width <= largest && p.height <= largest;
+    const auto grid = possible ? grid_of(p) : std::nullopt;
+    if (!grid || grid->warps() != header.warps_per_launch)
         throw Error(
             fmt::format("{}: expected a trace that says which pixel each lane works for, found thread map '{}', {} x "
                         "{} pixels, {} warps; leave out --heatmap",
                         name, p.thread_map, p.width, p.height, header.warps_per_launch));
-    const tracer::LaunchGrid grid = grid_of(p);
     cachesim::LanePixels pixels{p.width, p.height, {}};
-    pixels.of_lane.reserve(std::size_t{grid.warps()} * traces::warp_lanes);
-    for (std::uint32_t warp = 0; warp < grid.warps(); ++warp)
-        for (const tracer::LaneJob& job : grid.jobs(warp, 0).lane)
+    pixels.of_lane.reserve(std::size_t{grid->warps()} * traces::warp_lanes);
+    for (std::uint32_t warp = 0; warp < grid->warps(); ++warp)
+        for (const tracer::LaneJob& job : grid->jobs(warp, 0).lane)
             pixels.of_lane.push_back(job.x < p.width && job.y < p.height ? job.y * p.width + job.x
                                                                          : cachesim::LanePixels::no_pixel);
     return pixels;

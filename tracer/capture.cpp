@@ -53,7 +53,7 @@ std::vector<traces::Region> make_regions(const PreparedScene& scene) {
     return regions;
 }
 
-traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSettings& settings,
+traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSettings& settings, const LaunchGrid& grid,
                                    const SamplingStrategy& strategy) {
     traces::Provenance p;
     p.program = settings.program;
@@ -64,7 +64,7 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
     p.sequence = settings.strategy.sequence;
     p.decorrelation = settings.strategy.decorrelation;
     p.parameters = strategy.parameters();
-    p.thread_map = to_string(settings.thread_map);
+    p.thread_map = grid.name();
     p.layout = "bvh2";
     p.spp = settings.strategy.parameters.spp;
     p.seed = settings.strategy.parameters.seed;
@@ -85,7 +85,7 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
       camera_(scene.camera(), settings.width, settings.height),
       grid_(settings.thread_map, settings.width, settings.height, settings.strategy.parameters.spp,
             settings.strategy.parameters.interleave) {
-    header_.provenance = make_provenance(scene, settings_, strategy_);
+    header_.provenance = make_provenance(scene, settings_, grid_, strategy_);
     header_.regions = make_regions(scene);
     header_.launches = choose_launches(settings_, grid_.samples_per_launch());
     header_.warps_per_launch = grid_.warps();

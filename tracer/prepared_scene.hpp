@@ -1,7 +1,11 @@
 // A scene with everything derived from it once: BVH, lights, texel layout. Shared by all captures and renders of it.
 #pragma once
 
+#include <mutex>
+#include <optional>
+
 #include "tracer/bvh/bvh.hpp"
+#include "tracer/bvh/embree_scene.hpp"
 #include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/paths/lights.hpp"
 #include "tracer/scene/scene.hpp"
@@ -13,14 +17,23 @@ class PreparedScene {
 public:
     PreparedScene(Scene scene, const BvhSettings& settings)
         : scene_(with_offset_scale(std::move(scene))),
-          bvh_(make_bvh2(build_bvh(scene_, settings), scene_)),
+          settings_(settings),
           lights_(scene_),
           texels_(scene_) {}
     PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     const Scene& scene() const { return scene_; }
-    const Bvh2& bvh() const { return bvh_; }
+    /// Built when first asked for, as embree() is: a capture needs the one, a render the other. May be called by
+    /// several threads.
+    const Bvh2& bvh() const {
+        std::call_once(bvh_once_, [this] { bvh_.emplace(make_bvh2(build_bvh(scene_, settings_), scene_)); });
+        return *bvh_;
+    }
+    const EmbreeScene& embree() const {
+        std::call_once(embree_once_, [this] { embree_.emplace(scene_, texels_); });
+        return *embree_;
+    }
     const Lights& lights() const { return lights_; }
     const TexelLayout& texels() const { return texels_; }
     const Camera& camera() const { return scene_.cameras.front(); }
@@ -32,9 +45,12 @@ private:
     }
 
     Scene scene_;
-    Bvh2 bvh_;
+    BvhSettings settings_;
     Lights lights_;
     TexelLayout texels_;
+    mutable std::once_flag bvh_once_, embree_once_;
+    mutable std::optional<Bvh2> bvh_;
+    mutable std::optional<EmbreeScene> embree_;
 };
 
 }  // namespace raycache::tracer

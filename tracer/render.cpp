@@ -6,9 +6,8 @@
 
 #include <memory>
 
-#include "tracer/simt/recorder.hpp"
+#include "tracer/paths/embree_traversal.hpp"
 #include "tracer/simt/thread_map.hpp"
-#include "tracer/simt/warp_traversal.hpp"
 
 namespace raycache::tracer {
 namespace {
@@ -16,13 +15,12 @@ namespace {
 struct Worker {
     Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy,
            const PathSettings& paths)
-        : traversal(scene.scene(), scene.bvh(), scene.texels(), recorder),
+        : traversal(scene.embree()),
           integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal) {}
     Worker(const Worker&) = delete;  // its parts point at each other
 
-    NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal;
-    PathIntegrator<WarpTraversal<NullRecorder>> integrator;
+    EmbreeTraversal traversal;
+    PathIntegrator<EmbreeTraversal> integrator;
 };
 
 }  // namespace
@@ -36,6 +34,7 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
     const std::uint64_t spp = settings.strategy.parameters.spp;
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
 
+    scene.embree();  // built here, not by whichever worker comes first
     Image image{settings.width, settings.height, std::vector<Vec3>(std::size_t{settings.width} * settings.height)};
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
         [&] { return std::make_unique<Worker>(scene, camera, strategy, settings.paths); });

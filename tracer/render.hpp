@@ -1,4 +1,4 @@
-// A picture by the same integrator, sampling and traversal that captures use, without recording.
+// A picture by the same integrator and sampling that captures use; Embree walks the rays, for nothing is recorded.
 #pragma once
 
 #include <cstdint>

@@ -10,6 +10,7 @@
 
 #include "cachesim/report/estimate.hpp"
 #include "cachesim/report/groups.hpp"
+#include "cachesim/report/pairing.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::cachesim {
@@ -38,7 +39,10 @@ struct Draft {
     Sums l3_bytes() const { return sums(&Counters::l3_sectors, &Counters::rays, sector_bytes); }
     Sums dram_bytes() const { return sums(&Counters::dram_sectors, &Counters::rays, sector_bytes); }
 
-    auto key() const { return std::tie(row.scene, row.sequence, row.spp, row.thread_map, row.gpu, row.group); }
+    bool comparable(const Draft& other) const {
+        const auto key = [](const Row& r) { return std::tie(r.scene, r.sequence, r.spp, r.gpu, r.group); };
+        return key(row) == key(other.row) && same_work_per_launch(row.thread_map, other.row.thread_map);
+    }
 };
 
 Draft make_draft(const Series& series, const LaunchGroup& group) {
@@ -116,9 +120,14 @@ private:
 
 void compare(Draft& draft, const std::vector<Draft>& drafts, const std::string& baseline, Notes& notes) {
     Row& row = draft.row;
-    const auto base = std::find_if(drafts.begin(), drafts.end(), [&](const Draft& d) {
-        return d.row.strategy == baseline && d.key() == draft.key();
-    });
+    const auto find_base = [&](bool same_map) {
+        return std::find_if(drafts.begin(), drafts.end(), [&](const Draft& d) {
+            return d.row.strategy == baseline && d.comparable(draft) &&
+                   (!same_map || d.row.thread_map == row.thread_map);
+        });
+    };
+    auto base = find_base(true);
+    if (base == drafts.end()) base = find_base(false);
     if (base == drafts.end()) {
         notes.add(fmt::format("no ratio to the baseline {0} for {1}: the baseline has no such row{2}", baseline,
                               name_of(row), row.group == "all" ? "" : " in group " + row.group));

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "cachesim/report/estimate.hpp"
+#include "cachesim/report/pairing.hpp"
 #include "cachesim/report/table.hpp"
 #include "traces/error.hpp"
 
@@ -60,7 +61,10 @@ Sums cycles(const TimedSeries& series) {
     return sums;
 }
 
-auto key(const TimedSeries& s) { return std::tie(s.scene, s.sequence, s.spp, s.thread_map, s.gpu); }
+bool comparable(const TimedSeries& a, const TimedSeries& b) {
+    const auto key = [](const TimedSeries& s) { return std::tie(s.scene, s.sequence, s.spp, s.gpu); };
+    return key(a) == key(b) && same_work_per_launch(a.thread_map, b.thread_map);
+}
 
 std::vector<std::uint32_t> samples(const TimedSeries& s) {
     std::vector<std::uint32_t> all;
@@ -121,9 +125,14 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
             }
         }
         if (row.bottleneck_share < 0.5) row.bottleneck = "latency";
-        const auto base = std::find_if(all.begin(), all.end(), [&](const TimedSeries& s) {
-            return s.strategy == baseline && key(s) == key(series);
-        });
+        const auto find_base = [&](bool same_map) {
+            return std::find_if(all.begin(), all.end(), [&](const TimedSeries& s) {
+                return s.strategy == baseline && comparable(s, series) &&
+                       (!same_map || s.thread_map == series.thread_map);
+            });
+        };
+        auto base = find_base(true);
+        if (base == all.end()) base = find_base(false);
         if (base != all.end() && series.strategy != baseline) {
             if (samples(*base) == samples(series)) {
                 row.speed_up = ratio_to_baseline(cycles(*base), cycles(series));

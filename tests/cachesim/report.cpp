@@ -136,6 +136,22 @@ TEST_CASE("an unknown baseline is bad use; a missing or unpaired one is a note")
     CHECK_FALSE(r.rows[1].factors);
 }
 
+TEST_CASE("warps of pixel classes are compared with warps of tiles, warps of one pixel's samples with neither") {
+    auto all = two_strategies();
+    all[1].thread_map = "classes:8";
+    CHECK(make_report(all, "rotation", GroupBy::none).rows[1].dram_bytes_ratio.has_value());
+    all[1].thread_map = "samples";
+    CHECK_FALSE(make_report(all, "rotation", GroupBy::none).rows[1].dram_bytes_ratio.has_value());
+
+    // A baseline with the row's own thread map comes first.
+    all[1].thread_map = "classes:8";
+    all.push_back(all[1]);
+    all[2].strategy = "rotation";
+    const Report own = make_report(all, "rotation", GroupBy::none);
+    REQUIRE(own.rows[1].dram_bytes_ratio);
+    CHECK(own.rows[1].dram_bytes_ratio->mean == Approx(1));
+}
+
 TEST_CASE("one sample index gives no interval and says so once") {
     auto all = two_strategies();
     for (Series& s : all) s.launches.resize(1);

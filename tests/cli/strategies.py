@@ -57,6 +57,20 @@ class Strategies(ProgramTest):
             text = str(self.recorded(*options))
             self.assertIn(f"--thread-map {thread_map} ", text)
 
+    def test_strategies_with_pixel_classes_are_compared_and_explained_against_tiles(self):
+        for timed in ([], ["--timed"]):
+            row = self.succeeds("compare", "--scene", *SCENE, "--resolution", "64x64", "--trace-samples", "2", "--spp",
+                                "16", "--strategy", "cranley-patterson,interleaved", *GPU, *timed, "--json").json["rows"][1]
+            self.assertEqual((row["strategy"], row["thread_map"]), ("interleaved", "classes:8"))
+            ratio = row["speed_up"] if timed else row["dram_bytes_ratio"]
+            self.assertGreater(ratio["mean"], 0)
+        for strategy in ("cranley-patterson", "interleaved"):
+            self.recorded("--strategy", strategy)
+            self.path("trace.rct").rename(self.path(strategy + ".rct"))
+        text = self.succeeds("explain", "cranley-patterson.rct", "interleaved.rct", *GPU, "--heatmap", "a.exr").text
+        self.assertIn("interleaved", text)
+        self.assertTrue(self.path("a.exr").exists())
+
     def test_the_command_of_a_trace_makes_the_same_trace_again(self):
         command = None
         def find(value):

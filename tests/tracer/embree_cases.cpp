@@ -44,7 +44,7 @@ constexpr double embree_share_on_slivers = 1e-3;
 /// Our answers justified on every ray, and Embree's but for `embree_share` of them; no claim about how many differ.
 void check(const Scene& scene, std::span<const Ray> rays, const BvhSettings& settings = {}, double embree_share = 0) {
     const PreparedScene prepared(Scene(scene), settings);
-    const EmbreeReference embree(prepared.scene());
+    const EmbreeScene embree(prepared.scene());
     Comparison found = compare_closest(prepared, embree, rays);
     found += compare_any(prepared, embree, rays);
     INFO(found.text());

@@ -6,7 +6,7 @@
 
 #include "exact_judge.hpp"
 #include "test_rays.hpp"
-#include "tracer/bvh/embree_reference.hpp"
+#include "tracer/bvh/embree_scene.hpp"
 
 namespace raycache::tracer::test {
 
@@ -44,7 +44,7 @@ inline std::string describe(const Ray& r, const Hit& ours, const Hit& embree) {
     return text;
 }
 
-inline Comparison compare_closest(const PreparedScene& scene, const EmbreeReference& embree,
+inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree,
                                   std::span<const Ray> rays) {
     const std::vector<Hit> ours = closest_hits(scene, rays);
     Comparison out;
@@ -79,7 +79,7 @@ inline Comparison compare_closest(const PreparedScene& scene, const EmbreeRefere
     return out;
 }
 
-inline Comparison compare_any(const PreparedScene& scene, const EmbreeReference& embree, std::span<const Ray> rays) {
+inline Comparison compare_any(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
     const std::vector<bool> ours = any_hits(scene, rays);
     Comparison out;
     out.rays = rays.size();

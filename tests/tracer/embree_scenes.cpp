@@ -42,7 +42,7 @@ void check(const Comparison& result, double share) {
 /// A million rays: those of paths, random ones, and some aimed at edges.
 void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
     const PreparedScene prepared(opaque(std::move(scene)), settings);
-    const EmbreeReference embree(prepared.scene());
+    const EmbreeScene embree(prepared.scene());
     const std::size_t from_paths = million * 6 / 10, others = million / 10;
     RayCollector collector(prepared);
     trace_pictures(prepared, collector, 256, PathSettings{.bounces = 4, .russian_roulette = false},

@@ -5,7 +5,8 @@
 
 #include "path_rays.hpp"
 #include "tests/folders.hpp"
-#include "tracer/bvh/embree_reference.hpp"
+#include "tracer/bvh/embree_scene.hpp"
+#include "tracer/paths/embree_traversal.hpp"
 #include "tracer/paths/surface.hpp"
 
 using namespace raycache::tracer;
@@ -32,27 +33,6 @@ Vec3 mean(const PreparedScene& scene, const Pictures& p) {
     WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
     return mean(scene, traversal, p);
 }
-
-/// Embree in the place of the warp traversal.
-struct EmbreeTraversal {
-    const EmbreeReference& embree;
-
-    void closest(std::uint32_t mask, raycache::traces::RayType, std::uint8_t, const Ray* rays, Hit* hits) const {
-        for (; mask != 0; mask &= mask - 1) {
-            const int l = std::countr_zero(mask);
-            hits[l] = embree.intersect(rays[l]);
-        }
-    }
-    std::uint32_t occluded(std::uint32_t mask, raycache::traces::RayType, std::uint8_t, const Ray* rays) const {
-        std::uint32_t out = 0;
-        for (; mask != 0; mask &= mask - 1) {
-            const int l = std::countr_zero(mask);
-            out |= std::uint32_t{embree.occluded(rays[l])} << l;
-        }
-        return out;
-    }
-    void read_texels(std::uint32_t, raycache::traces::RayType, std::uint8_t, const std::uint32_t*) const {}
-};
 
 Camera camera_at(Vec3 eye, Vec3 forward, Vec3 up, float fov) { return {"test", eye, forward, up, fov}; }
 
@@ -186,12 +166,35 @@ TEST_CASE("paths: a picture is the same with Embree in the traversal's place") {
     scene.sky = {0.1F, 0.1F, 0.2F};
     scene.cameras = {camera_at({0, 1, 6}, {0, 0, -1}, {0, 1, 0}, 40)};
     const PreparedScene prepared(std::move(scene), {});
-    const EmbreeReference embree(prepared.scene());
-    EmbreeTraversal traversal{embree};
+    const EmbreeScene embree(prepared.scene());
+    const EmbreeTraversal traversal(embree);
     const Pictures pictures{64, 4, {3, false}};
     const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
     for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));
     CHECK(ours.x > 0.01F);
+}
+
+TEST_CASE("paths: a scene with holes, cut by texels and by alpha alone, is the same with Embree in the traversal's place") {
+    Scene scene = soup(3000, 0.3F, 5);
+    Material leaf = scene.materials[0], glass = scene.materials[0];
+    leaf.alpha_mask = glass.alpha_mask = true;
+    leaf.base_color_texture = 0;
+    glass.alpha = 0.2F;
+    scene.materials = {scene.materials[0], leaf, glass};
+    for (std::size_t t = 0; t < scene.material_of.size(); ++t) scene.material_of[t] = t % 3;
+    scene.textures.push_back({2, 1, {250, 250, 250, 255, 0, 0, 0, 0}, "half a leaf"});
+    for (std::size_t p = 0; p < scene.positions.size(); ++p)
+        scene.texcoords.push_back({static_cast<float>(p % 3) * 0.3F, 0.5F});
+    scene.sky = {0.5F, 0.6F, 0.8F};
+    scene.cameras = {camera_at({0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 40)};
+    Scene closed = scene;
+    for (Material& m : closed.materials) m.alpha_mask = false;
+    const PreparedScene prepared(std::move(scene), {}), solid(std::move(closed), {});
+    const EmbreeTraversal traversal(prepared.embree()), without_holes(solid.embree());
+    const Pictures pictures{64, 4, {3, false}};
+    const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
+    for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));
+    CHECK(ours.x != Approx(mean(solid, without_holes, pictures).x).epsilon(0.02));
 }
 
 TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's place", "[slow]") {
@@ -201,8 +204,8 @@ TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's pla
         return;
     }
     const PreparedScene prepared(load_gltf(path, nullptr), {});
-    const EmbreeReference embree(prepared.scene());
-    EmbreeTraversal traversal{embree};
+    const EmbreeScene embree(prepared.scene());
+    const EmbreeTraversal traversal(embree);
     const Pictures pictures{128, 8, {4, false}};
     const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
     for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));

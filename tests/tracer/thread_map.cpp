@@ -157,6 +157,23 @@ TEST_CASE("thread map: more classes than the picture's shorter side has pixels, 
     CHECK_NOTHROW(LaunchGrid(ThreadMap::tile, 64, 4, 8, 8));  // m plays no part
 }
 
+TEST_CASE("thread map: the name of a grid gives the same grid again, and no other name gives one") {
+    for (const LaunchGrid& grid : {LaunchGrid(ThreadMap::tile, 50, 40, 9), LaunchGrid(ThreadMap::samples, 50, 40, 9),
+                                   LaunchGrid(ThreadMap::classes, 50, 40, 9, 3)}) {
+        const auto again = LaunchGrid::from_name(grid.name(), 50, 40, 9);
+        REQUIRE(again);
+        CHECK(again->name() == grid.name());
+        REQUIRE(again->warps() == grid.warps());
+        for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+            CHECK(again->jobs(warp, 0).mask == grid.jobs(warp, 0).mask);
+            CHECK(again->jobs(warp, 0).lane[5].x == grid.jobs(warp, 0).lane[5].x);
+        }
+    }
+    CHECK(LaunchGrid(ThreadMap::classes, 50, 40, 9, 3).name() == "classes:3");
+    for (const char* name : {"", "tiles", "classes", "classes:", "classes:0", "classes:41", "classes:3x", "classes:-3"})
+        CHECK_FALSE(LaunchGrid::from_name(name, 50, 40, 9));
+}
+
 TEST_CASE("thread map: a name gives its map, another one is refused with the list") {
     for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::classes})
         CHECK(thread_map_from(to_string(map)) == map);

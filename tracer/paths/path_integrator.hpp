@@ -10,7 +10,7 @@
 //   void closest(mask, RayType, bounce, const Ray*, Hit*);         nearest hit per lane
 //   std::uint32_t occluded(mask, RayType, bounce, const Ray*);      lanes that hit anything
 //   void read_texels(mask, RayType, bounce, const std::uint32_t*);  texel elements read for shading
-// : WarpTraversal in captures and renders, Embree in benchmarks.
+// : WarpTraversal in captures, EmbreeTraversal in renders.
 #pragma once
 
 #include <algorithm>

@@ -46,7 +46,7 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     static_assert(sizeof(PathSettings) == 20, "put the new field of PathSettings into the key below");
     static_assert(sizeof(Sun) == 28, "put the new field of Sun into the key below");
     std::string key = fmt::format(
-        "raycache reference 2; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
+        "raycache reference 3; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
         "pixels; "
         "{} bounces, {} reflections, {} transmissions, lights {}{}; {} {}, {} samples per pixel, blocks of {}, seed "
         "{:x}",

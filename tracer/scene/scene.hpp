@@ -32,6 +32,9 @@ struct Material {
     float ior = 1.5F;                     ///< index of refraction, at least 1; 0: reflects everything
     bool thin = true;                     ///< glass is a pane; false: it bounds a solid
 
+    /// Whether a ray may pass through some of its points: alphaMode MASK.
+    bool may_have_holes() const { return alpha_mask && (base_color_texture >= 0 || alpha < alpha_cutoff); }
+
     /// Lambert's surface: neither metal nor glass, and a coat of roughness 1 counts as none.
     bool diffuse() const {
         return metallic == 0 && roughness >= 1 && transmission == 0 && !alpha_blend && metallic_roughness_texture < 0;

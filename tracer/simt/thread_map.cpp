@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "traces/error.hpp"
 
@@ -47,6 +48,24 @@ LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height,
     const std::uint32_t squares = squares_across_ * ((height + span - 1) / span);
     warps_per_class_ = squares * (map == ThreadMap::samples ? pixels_per_square : tiles_per_square);
     warps_ = warps_per_class_ * interleave_ * interleave_;
+}
+
+std::optional<LaunchGrid> LaunchGrid::from_name(const std::string& name, std::uint32_t width, std::uint32_t height,
+                                                std::uint64_t spp) {
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples})
+        if (name == to_string(map)) return LaunchGrid(map, width, height, spp);
+    const std::string prefix = to_string(ThreadMap::classes) + std::string(":");
+    if (!name.starts_with(prefix)) return std::nullopt;
+    std::uint32_t interleave = 0;
+    const char* const end = name.data() + name.size();
+    const auto read = std::from_chars(name.data() + prefix.size(), end, interleave);
+    if (read.ec != std::errc{} || read.ptr != end || interleave == 0 || interleave > std::min(width, height))
+        return std::nullopt;
+    return LaunchGrid(ThreadMap::classes, width, height, spp, interleave);
+}
+
+std::string LaunchGrid::name() const {
+    return map_ == ThreadMap::classes ? fmt::format("{}:{}", to_string(map_), interleave_) : to_string(map_);
 }
 
 WarpJobs LaunchGrid::jobs(std::uint32_t warp, std::uint32_t first_sample) const {

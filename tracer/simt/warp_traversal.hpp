@@ -13,7 +13,7 @@
 
 #include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/ray.hpp"
-#include "tracer/scene/texel_layout.hpp"
+#include "tracer/scene/cutout.hpp"
 #include "tracer/simt/box_test.hpp"
 #include "tracer/simt/recorder.hpp"
 #include "tracer/simt/triangle_test.hpp"
@@ -201,16 +201,10 @@ private:
         for (std::uint32_t m = mask; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
             const Hit& hit = candidate_[l];
-            const Material& material = scene_->materials[scene_->material_of[hit.triangle]];
-            float alpha = material.alpha;
-            if (material.base_color_texture >= 0) {
-                const auto texel =
-                    texels_->fetch(material.base_color_texture, texcoord_at(*scene_, hit.triangle, hit.u, hit.v));
-                elements[l] = texel.element;
-                alpha *= texel.alpha;
-                textured |= 1U << l;
-            }
-            if (alpha >= material.alpha_cutoff) solid |= accept(l, hits);
+            const Cutout cutout = cutout_at(*scene_, *texels_, hit.triangle, hit.u, hit.v);
+            elements[l] = cutout.element;
+            textured |= bit_if(cutout.textured, 1U << l);
+            if (cutout.solid) solid |= accept(l, hits);
         }
         if (textured != 0) record_texels(textured, more, elements);
         return solid;

@@ -21,10 +21,6 @@ void set_box(Bvh2Node& node, int child, const Box& box) {
     node.z[child + 2] = box.upper.z;
 }
 
-bool may_have_holes(const Material& m) {
-    return m.alpha_mask && (m.base_color_texture >= 0 || m.alpha < m.alpha_cutoff);
-}
-
 std::uint32_t to_link(std::uint32_t ref) {
     if (ref == ChildRef::nothing) return traces::no_link;
     if (ChildRef::is_leaf(ref)) return (std::uint32_t{triangle_region} << 30) | ChildRef::first(ref);
@@ -67,7 +63,7 @@ Bvh2 make_bvh2(const Bvh& bvh, const Scene& scene) {
     for (const std::uint32_t t : bvh.triangles) {
         const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
         out.triangles.push_back({scene.positions[index[0]], t, scene.positions[index[1]],
-                                 may_have_holes(scene.materials[scene.material_of[t]]) ? 1U : 0U,
+                                 scene.materials[scene.material_of[t]].may_have_holes() ? 1U : 0U,
                                  scene.positions[index[2]], 0});
     }
     out.stack_entries = bvh.depth + 1;

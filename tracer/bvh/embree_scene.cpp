@@ -1,0 +1,143 @@
+#include "tracer/bvh/embree_scene.hpp"
+
+#include <embree3/rtcore.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tracer/scene/cutout.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tracer {
+
+struct EmbreeScene::Impl {
+    /// Some of the scene's triangles. Those that may have holes are a geometry of their own: only it needs a filter.
+    struct Part {
+        const Impl* owner;
+        std::vector<std::uint32_t> triangles;  ///< scene triangle of each primitive; empty: all, in order
+        std::uint32_t triangle(std::uint32_t primitive) const {
+            return triangles.empty() ? primitive : triangles[primitive];
+        }
+    };
+
+    const Scene* scene_data = nullptr;
+    const TexelLayout* texels = nullptr;
+    Part parts[2]{{this, {}}, {this, {}}};  ///< solid, with holes
+    struct Release {
+        void operator()(RTCDevice handle) const { rtcReleaseDevice(handle); }
+        void operator()(RTCScene handle) const { rtcReleaseScene(handle); }
+    };
+    std::unique_ptr<RTCDeviceTy, Release> device;
+    std::unique_ptr<RTCSceneTy, Release> scene;
+
+    Impl(const Scene& data, const TexelLayout* holes) : scene_data(&data), texels(holes) {
+        device.reset(rtcNewDevice("set_affinity=0"));
+        if (!device) throw Error("Embree cannot start on this processor");
+        scene.reset(rtcNewScene(device.get()));
+        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+        for (std::uint32_t t = 0; holes != nullptr && t < data.triangle_count(); ++t)
+            if (data.materials[data.material_of[t]].may_have_holes()) parts[1].triangles.push_back(t);
+        if (!parts[1].triangles.empty()) {
+            std::size_t next = 0;
+            for (std::uint32_t t = 0; t < data.triangle_count(); ++t) {
+                if (next < parts[1].triangles.size() && parts[1].triangles[next] == t)
+                    ++next;
+                else
+                    parts[0].triangles.push_back(t);
+            }
+        }
+        const std::size_t with_holes = parts[1].triangles.size(), solid = data.triangle_count() - with_holes;
+        if (solid != 0) attach(0, solid);
+        if (with_holes != 0) attach(1, with_holes);
+        // One thread: with more, the order of triangles in the tree, and with it which of two coinciding ones is found,
+        // depends on timing.
+        const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+        tbb::task_arena(1).execute([&] { rtcCommitScene(scene.get()); });
+        if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
+            throw Error(data.name + ": Embree could not build its BVH: is there enough memory?");
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    void attach(std::uint32_t part, std::size_t count) {
+        const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        const std::vector<Vec3>& positions = scene_data->positions;
+        // Embree reads 16 bytes of each vertex: its own copy is padded.
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+            mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+            mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
+        if (vertices == nullptr || indices == nullptr) throw Error("Embree: out of memory");
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            vertices[3 * i] = positions[i].x;
+            vertices[3 * i + 1] = positions[i].y;
+            vertices[3 * i + 2] = positions[i].z;
+        }
+        for (std::uint32_t i = 0; i < count; ++i)
+            std::copy_n(&scene_data->indices[std::size_t{3} * parts[part].triangle(i)], 3, indices + std::size_t{3} * i);
+        if (part == 1) {
+            rtcSetGeometryUserData(mesh, &parts[1]);
+            rtcSetGeometryIntersectFilterFunction(mesh, skip_holes);
+            rtcSetGeometryOccludedFilterFunction(mesh, skip_holes);
+        }
+        rtcCommitGeometry(mesh);
+        rtcAttachGeometryByID(scene.get(), mesh, part);
+        rtcReleaseGeometry(mesh);
+    }
+
+    static void skip_holes(const RTCFilterFunctionNArguments* arguments) {
+        const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
+        for (unsigned i = 0; i < arguments->N; ++i) {
+            if (arguments->valid[i] == 0) continue;
+            const auto primitive = RTCHitN_primID(arguments->hit, arguments->N, i);
+            const Cutout cutout = cutout_at(*part.owner->scene_data, *part.owner->texels, part.triangle(primitive),
+                                            RTCHitN_u(arguments->hit, arguments->N, i),
+                                            RTCHitN_v(arguments->hit, arguments->N, i));
+            if (!cutout.solid) arguments->valid[i] = 0;
+        }
+    }
+
+    static RTCRay query(const Ray& ray) {
+        return {ray.origin.x,
+                ray.origin.y,
+                ray.origin.z,
+                ray.t_min,
+                ray.direction.x,
+                ray.direction.y,
+                ray.direction.z,
+                0,
+                ray.t_max,
+                ~0U,
+                0,
+                0};
+    }
+};
+
+EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene, nullptr)) {}
+EmbreeScene::EmbreeScene(const Scene& scene, const TexelLayout& texels)
+    : impl_(std::make_unique<Impl>(scene, &texels)) {}
+EmbreeScene::~EmbreeScene() = default;
+
+Hit EmbreeScene::intersect(const Ray& ray) const {
+    RTCRayHit query;
+    query.ray = Impl::query(ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(impl_->scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {query.ray.tfar, query.hit.u, query.hit.v, impl_->parts[query.hit.geomID].triangle(query.hit.primID)};
+}
+
+bool EmbreeScene::occluded(const Ray& ray) const {
+    RTCRay query = Impl::query(ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(impl_->scene.get(), &context, &query);
+    return query.tfar < 0;
+}
+
+}  // namespace raycache::tracer
