@@ -105,12 +105,10 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
                 fmt::format("{}, {} x {} pixels, reference of {} samples per pixel", report.scene, report.width,
                             report.height, report.reference_spp),
                 text_scale);
-    canvas.text(
-        margin, margin + line,
-        "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches. z: 1 without bias, above 1.4 the mean is off.",
-        text_scale);
+    canvas.text(margin, margin + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", text_scale);
+    canvas.text(margin, margin + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", text_scale);
     if (equal_time)
-        canvas.text(margin, margin + 2 * line,
+        canvas.text(margin, margin + 3 * line,
                     fmt::format("Equal time: as many samples as {} predicts to fit into the time of {}.", report.gpu,
                                 report.baseline.empty() ? "each" : report.baseline),
                     text_scale);

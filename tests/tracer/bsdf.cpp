@@ -173,7 +173,7 @@ TEST_CASE("bsdf: swapping light and eye changes nothing, up to the square of the
     }
 }
 
-TEST_CASE("bsdf: sampled weights are value over density, and directions unit") {
+TEST_CASE("bsdf: sampled weights are value over density, densities those of evaluation, and directions unit") {
     Random random(5);
     for (const Case& c : rough_cases()) {
         const Bsdf bsdf = c.bsdf();
@@ -184,7 +184,8 @@ TEST_CASE("bsdf: sampled weights are value over density, and directions unit") {
             if (s.delta || !(max_component(s.weight) > 0)) continue;
             const BsdfValue f = bsdf.evaluate(wo, s.wi);
             ++live;
-            wrong += !(f.pdf > 0) || std::fabs(s.weight.x * f.pdf - f.value.x) > 1e-4F * f.value.x ||
+            wrong += !(f.pdf > 0) || std::fabs(s.pdf - f.pdf) > 1e-4F * f.pdf ||
+                     std::fabs(s.weight.x * f.pdf - f.value.x) > 1e-4F * f.value.x ||
                      std::fabs(length(s.wi) - 1) > 1e-4F;
         }
         INFO(c.name());

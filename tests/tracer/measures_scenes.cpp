@@ -88,6 +88,15 @@ TEST_CASE("measures: Cranley-Patterson, owen, random and net-micro-jitter pass t
     CHECK(measure("sobol", "micro-jitter", 2, 64, 1).z > measure("sobol", "micro-jitter", 2, 64, 4).z);
 }
 
+TEST_CASE("measures: net-micro-jitter passes the bias test with every sequence that has nets in four dimensions") {
+    for (const char* sequence : {"sobol", "sobol-owen-4d"})
+        for (const std::uint32_t dimensions : {2U, 4U})
+            for (const std::uint32_t n : {16U, 64U, 256U}) {
+                INFO(sequence << ", " << dimensions << " dimensions, N " << n);
+                CHECK(measure(sequence, "net-micro-jitter", dimensions, n).z <= 1.4);
+            }
+}
+
 TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its union density") {
     // f = 1 where x < a and y < b: the integral of f * density is the mean over points of the share of their boxes in
     // that rectangle, wrapped.

@@ -207,7 +207,7 @@ public:
                 if (!(max_component(sample.weight) > 0)) return;
                 direction = sample.wi;
                 delta = sample.delta;
-                if (!delta && weighs_both(diffuse)) pdf = scattering.evaluate(direction).pdf;
+                if (!delta && weighs_both(diffuse)) pdf = sample.pdf;
                 p.throughput[l] *= sample.weight;
             }
             const bool transmission = is_transmission(s, direction);

@@ -30,13 +30,14 @@ BsdfValue Bsdf::evaluate(Vec3 wo, Vec3 wi) const {
 }
 
 BsdfSample Bsdf::sample(Vec3 wo, Vec2 random) const {
-    if (coverage_ < 1 && !choose(coverage_, random.x)) return {-wo, {1, 1, 1}, true, true};
-    if (glass_ == 0) return opaque_part_.sample(wo, random);
-    if (glass_ == 1) return glass_part_.sample(wo, random);
-    BsdfSample s = choose(glass_, random.x) ? glass_part_.sample(wo, random) : opaque_part_.sample(wo, random);
-    if (s.delta || !(max_component(s.weight) > 0)) return s;
+    if (coverage_ < 1 && !choose(coverage_, random.x)) return {-wo, {1, 1, 1}, 0, true, true};
+    const bool glass = glass_ == 1 || (glass_ > 0 && choose(glass_, random.x));
+    BsdfSample s = glass ? glass_part_.sample(wo, random) : opaque_part_.sample(wo, random);
+    s.pdf *= coverage_;
+    if (glass_ == 0 || glass_ == 1 || s.delta || !(max_component(s.weight) > 0)) return s;
     const BsdfValue f = evaluate(wo, s.wi);
     s.weight = f.pdf > 0 ? f.value / f.pdf : Vec3{};
+    s.pdf = f.pdf;
     return s;
 }
 

@@ -23,6 +23,7 @@ inline BsdfValue operator*(const BsdfValue& b, float share) { return {b.value * 
 struct BsdfSample {
     Vec3 wi;
     Vec3 weight;            ///< f |cos| / probability of the choice; black: nothing comes from there, the path ends
+    float pdf = 0;          ///< as BsdfValue's of the same pair; unused where `delta`
     bool delta = false;     ///< one of countably many directions: no light sample can find it
     bool straight = false;  ///< alpha: nothing is there; `wi` is -wo
 };

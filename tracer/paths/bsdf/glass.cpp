@@ -65,9 +65,9 @@ BsdfValue Glass::through_solid(Vec3 wo, Vec3 wi) const {
 BsdfSample Glass::sample(Vec3 wo, Vec2 random) const {
     float far = 0;
     if (smooth_) {
-        if (choose(fresnel(wo.z, far), random.x)) return {{-wo.x, -wo.y, wo.z}, {1, 1, 1}, true, false};
-        if (thin_) return {-wo, color_, true, false};
-        return {{-wo.x / eta_, -wo.y / eta_, -far}, color_ / (eta_ * eta_), true, false};
+        if (choose(fresnel(wo.z, far), random.x)) return {{-wo.x, -wo.y, wo.z}, {1, 1, 1}, 0, true, false};
+        if (thin_) return {-wo, color_, 0, true, false};
+        return {{-wo.x / eta_, -wo.y / eta_, -far}, color_ / (eta_ * eta_), 0, true, false};
     }
     const bool reflected = choose(reflection_probability(wo.z), random.x);
     const Vec3 h = ggx_.sample(wo, random);
@@ -81,7 +81,7 @@ BsdfSample Glass::sample(Vec3 wo, Vec2 random) const {
     }
     if (!(reflected ? wi.z > 0 : wi.z < 0)) return {};
     const BsdfValue f = evaluate(wo, wi);
-    return {wi, f.pdf > 0 ? f.value / f.pdf : Vec3{}, false, false};
+    return {wi, f.pdf > 0 ? f.value / f.pdf : Vec3{}, f.pdf, false, false};
 }
 
 }  // namespace raycache::tracer

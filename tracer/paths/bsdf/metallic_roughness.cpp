@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "tracer/paths/bsdf/fresnel.hpp"
-#include "tracer/paths/bsdf/ggx_albedo.hpp"
 #include "tracer/paths/directions.hpp"
 
 namespace raycache::tracer {
@@ -42,22 +41,24 @@ Vec3 MetallicRoughness::fresnel(float cosine) const {
     return f0_ * (1 - rise) + Vec3{rise, rise, rise};
 }
 
-float MetallicRoughness::specular_probability(float cosine) const {
-    if (!coat_) return 0;
+MetallicRoughness::Leaving MetallicRoughness::leaving(float cosine) const {
+    if (!coat_) return {{}, 0};
     const GgxAlbedo albedo = ggx_albedo(cosine, roughness_);
     const float specular = albedo.of(max_component(f0_));
     const float body = max_component(diffuse_) * left_ * (1 - albedo.of(dielectric_f0_)) +
                        max_component(multiple_) * lost_ * (1 - albedo.white());
-    return body > 0 ? specular / (specular + body) : 1;
+    return {albedo, body > 0 ? specular / (specular + body) : 1};
 }
 
-BsdfValue MetallicRoughness::evaluate(Vec3 wo, Vec3 wi) const {
+BsdfValue MetallicRoughness::evaluate(Vec3 wo, Vec3 wi) const { return evaluate(wo, leaving(wo.z), wi); }
+
+BsdfValue MetallicRoughness::evaluate(Vec3 wo, const Leaving& leaving, Vec3 wi) const {
     if (!(wi.z > 0) || !(wo.z > 0)) return {};
     if (!coat_) return {diffuse_ * (inv_pi * wi.z), inv_pi * wi.z};
-    const GgxAlbedo out = ggx_albedo(wo.z, roughness_), in = ggx_albedo(wi.z, roughness_);
+    const GgxAlbedo out = leaving.albedo, in = ggx_albedo(wi.z, roughness_);
     const float through = (1 - out.of(dielectric_f0_)) * (1 - in.of(dielectric_f0_));
     const float again = (1 - out.white()) * (1 - in.white());
-    const float specular = specular_probability(wo.z);
+    const float specular = leaving.specular;
     BsdfValue result{(diffuse_ * through + multiple_ * again) * (inv_pi * wi.z), (1 - specular) * inv_pi * wi.z};
     if (!smooth_) {
         const Vec3 h = normalize(wo + wi);
@@ -70,14 +71,15 @@ BsdfValue MetallicRoughness::evaluate(Vec3 wo, Vec3 wi) const {
 
 BsdfSample MetallicRoughness::sample(Vec3 wo, Vec2 random) const {
     Vec3 wi;
-    if (const float specular = specular_probability(wo.z); choose(specular, random.x)) {
-        if (smooth_) return {{-wo.x, -wo.y, wo.z}, fresnel(wo.z) / specular, true, false};
+    const Leaving out = leaving(wo.z);
+    if (choose(out.specular, random.x)) {
+        if (smooth_) return {{-wo.x, -wo.y, wo.z}, fresnel(wo.z) / out.specular, 0, true, false};
         wi = reflect(wo, ggx_.sample(wo, random));
     } else {
         wi = cosine_hemisphere(random);
     }
-    const BsdfValue f = evaluate(wo, wi);
-    return {wi, f.pdf > 0 ? f.value / f.pdf : Vec3{}, false, false};
+    const BsdfValue f = evaluate(wo, out, wi);
+    return {wi, f.pdf > 0 ? f.value / f.pdf : Vec3{}, f.pdf, false, false};
 }
 
 }  // namespace raycache::tracer

@@ -12,6 +12,7 @@
 
 #include "tracer/paths/bsdf/bsdf_sample.hpp"
 #include "tracer/paths/bsdf/ggx.hpp"
+#include "tracer/paths/bsdf/ggx_albedo.hpp"
 
 namespace raycache::tracer {
 
@@ -25,7 +26,13 @@ public:
 
 private:
     Vec3 fresnel(float cosine) const;
-    float specular_probability(float cosine) const;
+    /// What depends on wo alone.
+    struct Leaving {
+        GgxAlbedo albedo;
+        float specular;  ///< probability that sample() chooses the coat
+    };
+    Leaving leaving(float cosine) const;
+    BsdfValue evaluate(Vec3 wo, const Leaving&, Vec3 wi) const;
 
     bool coat_, smooth_;
     float roughness_, dielectric_f0_;
