@@ -74,19 +74,8 @@ TEST_CASE("in caches that hold everything it makes no difference when a line is 
 TEST_CASE("caches that allocate on fill lose nothing, however few lines, registers and merges they have") {
     for (const std::uint32_t fill : {32u, 64u, 128u}) {
         for (const std::uint64_t ways : {1, 2, 3}) {
-            Gpu gpu = timed_gpu();
-            gpu.warps_per_sm = 6;
-            gpu.warps_per_cta = 3;
-            gpu.levels[0].sets = 1;
-            gpu.levels[0].ways = ways;
-            gpu.levels[1].slices = 3;
-            gpu.levels[1].sets = 5;
-            gpu.levels[1].ways = 1;
+            Gpu gpu = cramped_gpu(ways);
             gpu.levels[1].fill_bytes = fill;
-            gpu.timing->l1_mshrs = 2;
-            gpu.timing->l1_mshr_merges = gpu.timing->l2_mshr_merges = 1;
-            gpu.timing->l2_mshrs = 1;
-            gpu.timing->dram_channels = 2;
             const Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 300)}, 12, 20, ways);
             const auto t = timed_with(gpu, Allocate::on_fill, Allocate::on_fill, launch);
             CHECK(t.lane_accesses == launch.lane_accesses());

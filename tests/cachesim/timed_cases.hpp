@@ -39,6 +39,23 @@ inline Gpu timed_gpu() {
     return gpu;
 }
 
+/// Too few lines, registers and merges for its warps, in odd numbers.
+inline Gpu cramped_gpu(std::uint64_t ways) {
+    Gpu gpu = timed_gpu();
+    gpu.warps_per_sm = 6;
+    gpu.warps_per_cta = 3;
+    gpu.levels[0].sets = 1;
+    gpu.levels[0].ways = ways;
+    gpu.levels[1].slices = 3;
+    gpu.levels[1].sets = 5;
+    gpu.levels[1].ways = 1;
+    gpu.timing->l1_mshrs = 2;
+    gpu.timing->l1_mshr_merges = gpu.timing->l2_mshr_merges = 1;
+    gpu.timing->l2_mshrs = 1;
+    gpu.timing->dram_channels = 2;
+    return gpu;
+}
+
 /// Elements of 16 bytes: one load each.
 inline const std::vector<traces::Region> pieces{region(traces::ObjectKind::node, 0x200000, 16, 16, 1u << 24)};
 

@@ -148,21 +148,8 @@ TEST_CASE("more CTAs than slots, fewer than SMs, and empty warps all end") {
 
 TEST_CASE("tiny and odd caches hold up the port but lose nothing") {
     for (const std::uint64_t ways : {1, 2, 3}) {
-        Gpu gpu = timed_gpu();
-        gpu.warps_per_sm = 6;
-        gpu.warps_per_cta = 3;
-        gpu.levels[0].sets = 1;
-        gpu.levels[0].ways = ways;
-        gpu.levels[1].slices = 3;
-        gpu.levels[1].sets = 5;
-        gpu.levels[1].ways = 1;
-        gpu.timing->l1_mshrs = 2;
-        gpu.timing->l1_mshr_merges = 1;
-        gpu.timing->l2_mshrs = 1;
-        gpu.timing->l2_mshr_merges = 1;
-        gpu.timing->dram_channels = 2;
         const Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 300)}, 12, 20, ways);
-        const TimedStatistics t = timed(gpu, launch);
+        const TimedStatistics t = timed(cramped_gpu(ways), launch);
         CHECK(t.lane_accesses == launch.lane_accesses());
         CHECK(t.l2.requests() == t.l1.misses());
     }
