@@ -1,6 +1,6 @@
 // Capture (traversal, shading, encoding and writing the trace) and rendering (Embree's traversal, and shading) against
-// Embree's rtcIntersect1 / rtcOccluded1 alone on the same rays, in turn within one repetition, so that a machine that slows
-// down slows both.
+// Embree's rtcIntersect1 / rtcOccluded1 alone on the same rays, in turn within one repetition, so that a machine that
+// slows down slows both.
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>

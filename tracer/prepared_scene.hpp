@@ -16,10 +16,7 @@ namespace raycache::tracer {
 class PreparedScene {
 public:
     PreparedScene(Scene scene, const BvhSettings& settings)
-        : scene_(with_offset_scale(std::move(scene))),
-          settings_(settings),
-          lights_(scene_),
-          texels_(scene_) {}
+        : scene_(with_offset_scale(std::move(scene))), settings_(settings), lights_(scene_), texels_(scene_) {}
     PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
     PreparedScene& operator=(const PreparedScene&) = delete;
 

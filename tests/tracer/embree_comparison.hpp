@@ -44,8 +44,7 @@ inline std::string describe(const Ray& r, const Hit& ours, const Hit& embree) {
     return text;
 }
 
-inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree,
-                                  std::span<const Ray> rays) {
+inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
     const std::vector<Hit> ours = closest_hits(scene, rays);
     Comparison out;
     out.rays = rays.size();

@@ -92,7 +92,8 @@ public:
             out.inside = std::min(out.inside, edge[i] > 0 ? sign * weight[i] / edge[i]
                                                           : -std::hypot(p[(i + 1) % 3][0], p[(i + 1) % 3][1]));
         if (out.inside < 0) out.inside = -outside(p);
-        double z = z_low, move = std::max(z_high - z_low, (axis_high - axis_low) * length_ / std::fabs(direction_[main_axis_]));
+        double z = z_low,
+               move = std::max(z_high - z_low, (axis_high - axis_low) * length_ / std::fabs(direction_[main_axis_]));
         if (height > 0) {
             z = (weight[0] * p[0][2] + weight[1] * p[1][2] + weight[2] * p[2][2]) / area;
             z = std::clamp(z, z_low, z_high);

@@ -174,7 +174,8 @@ TEST_CASE("paths: a picture is the same with Embree in the traversal's place") {
     CHECK(ours.x > 0.01F);
 }
 
-TEST_CASE("paths: a scene with holes, cut by texels and by alpha alone, is the same with Embree in the traversal's place") {
+TEST_CASE(
+    "paths: a scene with holes, cut by texels and by alpha alone, is the same with Embree in the traversal's place") {
     Scene scene = soup(3000, 0.3F, 5);
     Material leaf = scene.materials[0], glass = scene.materials[0];
     leaf.alpha_mask = glass.alpha_mask = true;

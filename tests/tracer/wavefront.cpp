@@ -94,8 +94,8 @@ std::vector<Vec3> megakernel_picture(const Capture& capture) {
     NullRecorder recorder;
     WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
     PathIntegrator<WarpTraversal<NullRecorder>> integrator(scene.scene(), capture.camera(), scene.lights(),
-                                                           scene.texels(), capture.strategy(),
-                                                           capture.settings().paths, traversal);
+                                                           scene.texels(), capture.strategy(), capture.settings().paths,
+                                                           traversal);
     std::vector<Vec3> pixels(std::size_t{40} * 24);
     for (std::uint32_t warp = 0; warp < capture.header().warps_per_launch; ++warp) {
         std::array<PathLane, traces::warp_lanes> lanes;

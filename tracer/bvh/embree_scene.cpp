@@ -65,8 +65,8 @@ struct EmbreeScene::Impl {
         const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         const std::vector<Vec3>& positions = scene_data->positions;
         // Embree reads 16 bytes of each vertex: its own copy is padded.
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-            mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                     3 * sizeof(float), positions.size()));
         auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
             mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
         if (vertices == nullptr || indices == nullptr) throw Error("Embree: out of memory");
@@ -76,7 +76,8 @@ struct EmbreeScene::Impl {
             vertices[3 * i + 2] = positions[i].z;
         }
         for (std::uint32_t i = 0; i < count; ++i)
-            std::copy_n(&scene_data->indices[std::size_t{3} * parts[part].triangle(i)], 3, indices + std::size_t{3} * i);
+            std::copy_n(&scene_data->indices[std::size_t{3} * parts[part].triangle(i)], 3,
+                        indices + std::size_t{3} * i);
         if (part == 1) {
             rtcSetGeometryUserData(mesh, &parts[1]);
             rtcSetGeometryIntersectFilterFunction(mesh, skip_holes);
@@ -92,9 +93,9 @@ struct EmbreeScene::Impl {
         for (unsigned i = 0; i < arguments->N; ++i) {
             if (arguments->valid[i] == 0) continue;
             const auto primitive = RTCHitN_primID(arguments->hit, arguments->N, i);
-            const Cutout cutout = cutout_at(*part.owner->scene_data, *part.owner->texels, part.triangle(primitive),
-                                            RTCHitN_u(arguments->hit, arguments->N, i),
-                                            RTCHitN_v(arguments->hit, arguments->N, i));
+            const Cutout cutout =
+                cutout_at(*part.owner->scene_data, *part.owner->texels, part.triangle(primitive),
+                          RTCHitN_u(arguments->hit, arguments->N, i), RTCHitN_v(arguments->hit, arguments->N, i));
             if (!cutout.solid) arguments->valid[i] = 0;
         }
     }

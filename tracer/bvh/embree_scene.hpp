@@ -15,7 +15,7 @@ namespace raycache::tracer {
 /// triangles coincide.
 class EmbreeScene {
 public:
-    explicit EmbreeScene(const Scene&);  ///< opaque: holes of alpha-masked materials are not cut out
+    explicit EmbreeScene(const Scene&);             ///< opaque: holes of alpha-masked materials are not cut out
     EmbreeScene(const Scene&, const TexelLayout&);  ///< with the holes that WarpTraversal sees
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;

@@ -48,7 +48,7 @@ public:
     static std::optional<LaunchGrid> from_name(const std::string& name, std::uint32_t width, std::uint32_t height,
                                                std::uint64_t spp);
 
-    std::string name() const;  ///< of the thread map, with its m: "tile", "samples", "classes:8"
+    std::string name() const;                       ///< of the thread map, with its m: "tile", "samples", "classes:8"
     std::uint32_t warps() const { return warps_; }  ///< per launch; some may lie outside the picture and stay empty
     WarpJobs jobs(std::uint32_t warp, std::uint32_t first_sample) const;
     std::uint32_t samples_per_launch() const { return map_ == ThreadMap::samples ? traces::warp_lanes : 1; }
