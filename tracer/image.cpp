@@ -1,7 +1,5 @@
 #include "tracer/image.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,10 +7,11 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
+#include "tracer/image_codec.hpp"
 #include "tracer/png_chunks.hpp"
 #include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
@@ -33,61 +32,53 @@ bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// An image file in memory, opened: its header is read and found acceptable, its texels are not decoded.
-class OpenedImage {
-    const std::string& name_;
-    OIIO::Filesystem::IOMemReader memory_;  // outlives `input`
+[[noreturn]] void fail_to_decode(const std::string& name, const std::string& why) {
+    throw Error(fmt::format("{}: expected a whole PNG or JPEG image, found a damaged one ({}); export it again", name,
+                            first_line(why)));
+}
 
-public:
-    OpenedImage(std::span<const std::uint8_t> bytes, const std::string& name)
-        : name_(name), memory_(bytes.data(), bytes.size()) {
-        const bool png = starts_with(bytes, "\x89PNG\r\n\x1A\n"), jpeg = starts_with(bytes, "\xFF\xD8\xFF");
-        if (!png && !jpeg)
-            throw Error(fmt::format("{}: expected a PNG or JPEG image, found {} bytes of something else; convert it",
-                                    name, bytes.size()));
-        if (png && !is_whole_png(bytes)) fail("a chunk is cut short or has a wrong checksum");
-        OIIO::ImageSpec config;
-        config.attribute("oiio:UnassociatedAlpha", 1);  // glTF's colours are not multiplied by alpha
-        input = OIIO::ImageInput::create(png ? "png" : "jpeg");
-        if (!input) fail(OIIO::geterror());
-        OIIO::ImageSpec spec;
-        if (!input->set_ioproxy(&memory_) || !input->open(png ? "memory.png" : "memory.jpg", spec, config))
-            fail(input->geterror());
-        if (spec.width < 1 || spec.height < 1 || spec.width > max_side || spec.height > max_side || spec.nchannels < 1)
-            throw Error(fmt::format("{}: expected an image of 1 to {} pixels on each side, found {} x {}; reduce it",
-                                    name, max_side, spec.width, spec.height));
-    }
-
-    [[noreturn]] void fail(const std::string& why) const {
-        throw Error(fmt::format("{}: expected a whole PNG or JPEG image, found a damaged one ({}); export it again",
-                                name_, first_line(why)));
-    }
-
-    std::unique_ptr<OIIO::ImageInput> input;
+struct TextureLayout {
+    ImageFormat format;
+    ImageLayout layout;
 };
 
-enum class FileKind { png, jpeg, exr, hdr };
+/// From the header, found acceptable.
+TextureLayout texture_layout(std::span<const std::uint8_t> bytes, const std::string& name) {
+    const bool png = starts_with(bytes, "\x89PNG\r\n\x1A\n"), jpeg = starts_with(bytes, "\xFF\xD8\xFF");
+    if (!png && !jpeg)
+        throw Error(fmt::format("{}: expected a PNG or JPEG image, found {} bytes of something else; convert it", name,
+                                bytes.size()));
+    if (png && !is_whole_png(bytes)) fail_to_decode(name, "a chunk is cut short or has a wrong checksum");
+    TextureLayout found{png ? ImageFormat::png : ImageFormat::jpeg, {}};
+    const std::string problem = image_codec().read_layout(bytes, found.format, found.layout);
+    if (!problem.empty()) fail_to_decode(name, problem);
+    const auto [width, height, channels] = std::tie(found.layout.width, found.layout.height, found.layout.channels);
+    if (width < 1 || height < 1 || width > max_side || height > max_side || channels < 1)
+        throw Error(fmt::format("{}: expected an image of 1 to {} pixels on each side, found {} x {}; reduce it", name,
+                                max_side, width, height));
+    return found;
+}
 
-std::optional<FileKind> kind_of(const std::string& path) {
+std::optional<ImageFormat> format_of(const std::string& path) {
     const std::size_t dot = path.rfind('.');
     if (dot == std::string::npos) return std::nullopt;
     std::string extension = path.substr(dot + 1);
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (extension == "png") return FileKind::png;
-    if (extension == "jpg" || extension == "jpeg") return FileKind::jpeg;
-    if (extension == "exr") return FileKind::exr;
-    if (extension == "hdr") return FileKind::hdr;
+    if (extension == "png") return ImageFormat::png;
+    if (extension == "jpg" || extension == "jpeg") return ImageFormat::jpeg;
+    if (extension == "exr") return ImageFormat::exr;
+    if (extension == "hdr") return ImageFormat::hdr;
     return std::nullopt;
 }
 
-FileKind require_kind(const std::string& path) {
-    const auto kind = kind_of(path);
-    if (!kind)
+ImageFormat require_format(const std::string& path) {
+    const auto format = format_of(path);
+    if (!format)
         throw UsageError(
             fmt::format("{}: expected an image name that ends in .png, .jpg, .exr or .hdr, found another; "
                         "rename it",
                         path));
-    return *kind;
+    return *format;
 }
 
 [[noreturn]] void fail_to_encode(const std::string& path, const std::string& why) {
@@ -103,45 +94,38 @@ void check_size(const std::string& path, std::uint32_t width, std::uint32_t heig
 }
 
 /// Encodes in memory, which leaves nothing on the disk when it fails, then writes the file.
-void write_encoded(const std::string& path, const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
-                   const void* texels) {
-    const auto output = OIIO::ImageOutput::create(format);
-    if (!output) fail_to_encode(path, OIIO::geterror());
+void write_encoded(const std::string& path, ImageFormat format, const ImageLayout& layout, const void* texels) {
     std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    if (!output->set_ioproxy(&memory) || !output->open(std::string("memory.") + format, spec) ||
-        !output->write_image(type, texels) || !output->close())
-        fail_to_encode(path, output->geterror());
+    const std::string problem = image_codec().encode(format, layout, texels, bytes);
+    if (!problem.empty()) fail_to_encode(path, problem);
     traces::OutputFile file(path);
     file.write(std::span<const std::uint8_t>(bytes));
     file.commit();
 }
 
-OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height, int channels, const OIIO::TypeDesc& type) {
-    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), channels, type);
-    spec.attribute("DateTime", "");  // else the time of day: the same picture would give other bytes
-    return spec;
+ImageLayout layout_of(std::uint32_t width, std::uint32_t height, std::size_t channels, bool floats) {
+    // No time of day: the same picture would give other bytes.
+    return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), floats, {},
+            {{"DateTime", ""}}};
 }
 
 }  // namespace
 
 ImageSize image_size(std::span<const std::uint8_t> bytes, const std::string& name) {
-    const OpenedImage image(bytes, name);
-    const OIIO::ImageSpec& spec = image.input->spec();
-    return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height)};
+    const ImageLayout layout = texture_layout(bytes, name).layout;
+    return {static_cast<std::uint32_t>(layout.width), static_cast<std::uint32_t>(layout.height)};
 }
 
 Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& name) {
-    const OpenedImage image(bytes, name);
-    const OIIO::ImageSpec& spec = image.input->spec();
+    const auto [format, layout] = texture_layout(bytes, name);
     Texture texture;
     texture.name = name;
-    texture.width = static_cast<std::uint32_t>(spec.width);
-    texture.height = static_cast<std::uint32_t>(spec.height);
+    texture.width = static_cast<std::uint32_t>(layout.width);
+    texture.height = static_cast<std::uint32_t>(layout.height);
     texture.rgba.assign(std::size_t{4} * texture.width * texture.height, 255);
-    const int channels = std::min(spec.nchannels, 4);
-    if (!image.input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, texture.rgba.data(), 4))
-        image.fail(image.input->geterror());
+    const int channels = std::min(layout.channels, 4);
+    const std::string problem = image_codec().read_texels(bytes, format, channels, false, texture.rgba.data(), 4);
+    if (!problem.empty()) fail_to_decode(name, problem);
     if (channels <= 2) {  // grey, perhaps with alpha
         for (std::size_t i = 0; i < texture.rgba.size(); i += 4) {
             if (channels == 2) texture.rgba[i + 3] = texture.rgba[i + 1];
@@ -151,46 +135,48 @@ Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& nam
     return texture;
 }
 
-void check_image_name(const std::string& path) { require_kind(path); }
+void check_image_name(const std::string& path) {
+    require_format(path);
+    image_codec();  // may be missing
+}
 
 void write_image(const std::string& path, const Image& image, float exposure_stops) {
-    const FileKind kind = require_kind(path);
+    const ImageFormat format = require_format(path);
     check_size(path, image.width, image.height, image.pixels.size());
-    if (kind == FileKind::exr || kind == FileKind::hdr) {
-        OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::FLOAT);
-        if (kind == FileKind::exr) spec.attribute("compression", "zip");
-        return write_encoded(path, kind == FileKind::exr ? "openexr" : "hdr", spec, OIIO::TypeDesc::FLOAT,
-                             image.pixels.data());
+    const bool floats = format == ImageFormat::exr || format == ImageFormat::hdr;
+    ImageLayout layout = layout_of(image.width, image.height, 3, floats);
+    if (floats) {
+        if (format == ImageFormat::exr) layout.attributes.emplace_back("compression", "zip");
+        return write_encoded(path, format, layout, image.pixels.data());
     }
     std::vector<std::array<std::uint8_t, 3>> screen;
     screen.reserve(image.pixels.size());
     for (const Vec3 pixel : image.pixels) screen.push_back(tone_map(pixel, exposure_stops));
-    OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-    if (kind == FileKind::jpeg) spec.attribute("Compression", "jpeg:95");
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    write_encoded(path, kind == FileKind::png ? "png" : "jpeg", spec, OIIO::TypeDesc::UINT8, screen.data());
+    if (format == ImageFormat::jpeg) layout.attributes.emplace_back("Compression", "jpeg:95");
+    layout.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    write_encoded(path, format, layout, screen.data());
 }
 
 void write_screen_image(const std::string& path, const ScreenImage& image) {
     check_size(path, image.width, image.height, image.pixels.size());
-    OIIO::ImageSpec spec = spec_of(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    write_encoded(path, "png", spec, OIIO::TypeDesc::UINT8, image.pixels.data());
+    ImageLayout layout = layout_of(image.width, image.height, 3, false);
+    layout.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    write_encoded(path, ImageFormat::png, layout, image.pixels.data());
 }
 
 void write_channels(const std::string& path, std::uint32_t width, std::uint32_t height,
                     const std::vector<Channel>& channels, const TextAttributes& attributes) {
-    OIIO::ImageSpec spec = spec_of(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
-    spec.attribute("compression", "zip");
-    for (const auto& [name, text] : attributes) spec.attribute(name, text);
+    ImageLayout layout = layout_of(width, height, channels.size(), true);
+    layout.attributes.emplace_back("compression", "zip");
+    layout.attributes.insert(layout.attributes.end(), attributes.begin(), attributes.end());
     std::vector<float> interleaved(std::size_t{width} * height * channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c) {
         check_size(path, width, height, channels[c].values.size());
-        spec.channelnames[c] = channels[c].name;
+        layout.channel_names.push_back(channels[c].name);
         for (std::size_t i = 0; i < channels[c].values.size(); ++i)
             interleaved[i * channels.size() + c] = channels[c].values[i];
     }
-    write_encoded(path, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
+    write_encoded(path, ImageFormat::exr, layout, interleaved.data());
 }
 
 ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes) {
@@ -204,25 +190,25 @@ ChannelFile read_channels(const std::string& path, const std::vector<std::string
     std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
     if (!stream || bytes.empty()) fail("no file that can be read");
     if (!starts_with(bytes, "\x76\x2f\x31\x01")) fail("something else");
-    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    const auto input = OIIO::ImageInput::create("openexr");
-    OIIO::ImageSpec spec;
-    if (!input || !input->set_ioproxy(&memory) || !input->open("memory.exr", spec))
-        fail("a damaged one (" + first_line(input ? input->geterror() : OIIO::geterror()) + ")");
-    if (spec.width < 1 || spec.height < 1 || spec.width > max_side || spec.height > max_side || spec.nchannels < 1 ||
-        spec.nchannels > 64 || spec.format != OIIO::TypeDesc::FLOAT)
+    ImageLayout layout;
+    for (const std::string& name : attributes) layout.attributes.emplace_back(name, "");
+    const auto check = [&](const std::string& problem) {
+        if (!problem.empty()) fail("a damaged one (" + first_line(problem) + ")");
+    };
+    check(image_codec().read_layout(bytes, ImageFormat::exr, layout));
+    if (layout.width < 1 || layout.height < 1 || layout.width > max_side || layout.height > max_side ||
+        layout.channels < 1 || layout.channels > 64 || !layout.floats)
         fail("another kind of image");
-    ChannelFile file{static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height), {}, {}};
-    const std::size_t pixels = std::size_t{file.width} * file.height, count = static_cast<std::size_t>(spec.nchannels);
+    ChannelFile file{static_cast<std::uint32_t>(layout.width), static_cast<std::uint32_t>(layout.height), {}, {}};
+    const std::size_t pixels = std::size_t{file.width} * file.height, count = static_cast<std::size_t>(layout.channels);
     std::vector<float> interleaved(pixels * count);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
-        fail("a damaged one (" + first_line(input->geterror()) + ")");
+    check(image_codec().read_texels(bytes, ImageFormat::exr, layout.channels, true, interleaved.data(),
+                                    count * sizeof(float)));
     for (std::size_t c = 0; c < count; ++c) {
-        Channel& channel = file.channels.emplace_back(Channel{spec.channelnames[c], std::vector<float>(pixels)});
+        Channel& channel = file.channels.emplace_back(Channel{layout.channel_names[c], std::vector<float>(pixels)});
         for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = interleaved[i * count + c];
     }
-    for (const std::string& name : attributes)
-        file.attributes.emplace_back(name, std::string(spec.get_string_attribute(name)));
+    file.attributes = layout.attributes;
     return file;
 }
 

@@ -1,4 +1,4 @@
-// The one header behind which OpenImageIO stands: decode a texture, write a picture or a map of numbers.
+// Images: decode a texture, write a picture or a map of numbers. OpenImageIO, behind image_codec.hpp, does the work.
 #pragma once
 
 #include <array>
@@ -67,7 +67,7 @@ struct ChannelFile {
 /// file is missing, damaged or something else.
 ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes);
 
-/// Throws UsageError unless write_image() knows the extension of `path`.
+/// Throws UsageError unless write_image() knows the extension of `path`, Error if nothing can be written at all.
 void check_image_name(const std::string& path);
 
 }  // namespace raycache::tracer

@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 """raycache render."""
+import shutil
 import struct
+import subprocess
 import zlib
 
-from support import PICTURE, SCENE, ProgramTest, main
+from support import PICTURE, RAYCACHE, SCENE, ProgramTest, main
 
 
 def png_size(data):
@@ -59,6 +61,17 @@ class Render(ProgramTest):
         plain = self.render("plain.png")
         self.assertNotEqual(self.render("moved.png", "--eye", "3,6,4", "--look-at", "0,1,-2"), plain)
         self.assertNotEqual(self.render("narrow.png", "--fov", "15"), plain)
+
+    def test_without_the_module_for_images_nothing_is_rendered_and_all_else_works(self):
+        alone = self.path("raycache")
+        shutil.copy(RAYCACHE, alone)
+        done = subprocess.run([alone, "render", *SCENE, *PICTURE, "--spp", "2", "-o", "a.png"], cwd=self.folder,
+                              capture_output=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), (1, b""))
+        self.assertRegex(done.stderr.decode(), r"\Araycache: error: libraycache_images\.so: .*\n\Z")
+        self.assertEqual(self.listing(), ["raycache"])
+        listed = subprocess.run([alone, "list", "scenes"], capture_output=True, check=False)
+        self.assertEqual((listed.returncode, listed.stderr), (0, b""))
 
     def test_an_existing_picture_is_replaced(self):
         self.path("picture.png").write_bytes(b"old")
