@@ -28,7 +28,7 @@ void check_equal(const Gpu& gpu, const std::vector<traces::Region>& regions, uns
 
 }  // namespace
 
-TEST_CASE("a replay equals the naive replay for every cache geometry") {
+TEST_CASE("a replay equals the naive replay for every cache geometry", "[oracle]") {
     const auto sets = GENERATE(1, 2, 3, 24, 64);
     const auto ways = GENERATE(1, 2, 3, 4, 5, 8, 17, 48, 63, 64, 65, 512);
     const auto index = GENERATE(SetIndex::modulo, SetIndex::xor_fold);
@@ -43,7 +43,7 @@ TEST_CASE("a replay equals the naive replay for every cache geometry") {
     check_equal(gpu, usual_regions);
 }
 
-TEST_CASE("a replay equals the naive replay for every policy, fill and number of slices") {
+TEST_CASE("a replay equals the naive replay for every policy, fill and number of slices", "[oracle]") {
     const auto* const policy = GENERATE("fifo", "lru", "random", "tree_plru");
     const auto slices = GENERATE(1u, 2u, 3u, 36u);
     const auto fill = GENERATE(32u, 64u, 128u);
@@ -62,7 +62,7 @@ TEST_CASE("a replay equals the naive replay for every policy, fill and number of
     check_equal(gpu, usual_regions);
 }
 
-TEST_CASE("a replay equals the naive replay for three levels") {
+TEST_CASE("a replay equals the naive replay for three levels", "[oracle]") {
     const auto sms = GENERATE(1u, 2u, 5u);
     const auto l1_per_sm = GENERATE(1u, 2u);
     const auto fill = GENERATE(32u, 64u);
@@ -79,7 +79,7 @@ TEST_CASE("a replay equals the naive replay for three levels") {
     if (sms == 2 && fill == 64) check_equal(gpu, usual_regions, 60, 200);  // more than one batch of requests
 }
 
-TEST_CASE("a replay equals the naive replay for every SIMD width and front end") {
+TEST_CASE("a replay equals the naive replay for every SIMD width and front end", "[oracle]") {
     const auto width = GENERATE(1u, 2u, 4u, 8u, 16u, 32u);
     const auto load_bytes = GENERATE(4u, 8u, 16u);
     const auto together = GENERATE(1u, 2u, 8u, 32u);
@@ -94,7 +94,7 @@ TEST_CASE("a replay equals the naive replay for every SIMD width and front end")
                 10, 10);
 }
 
-TEST_CASE("a replay equals the naive replay at every extreme at once") {
+TEST_CASE("a replay equals the naive replay at every extreme at once", "[oracle]") {
     const auto* const policy = GENERATE("fifo", "lru", "random", "tree_plru");
     Gpu gpu = small_gpu();
     gpu.sms = gpu.warps_per_sm = gpu.warps_per_cta = 1;
@@ -114,7 +114,7 @@ TEST_CASE("a replay equals the naive replay at every extreme at once") {
     check_equal(gpu, {region(ObjectKind::node, ~std::uint64_t{0} - 64 * 30 + 1, 64, 64, 30)}, 9, 12);
 }
 
-TEST_CASE("a replay equals the naive replay for every line and sector size") {
+TEST_CASE("a replay equals the naive replay for every line and sector size", "[oracle]") {
     const auto [line, sector] = GENERATE(table<std::uint32_t, std::uint32_t>(
         {{128, 32}, {128, 128}, {64, 32}, {32, 32}, {16, 4}, {128, 4}, {256, 8}, {4096, 128}}));
     Gpu gpu = small_gpu();
@@ -124,7 +124,7 @@ TEST_CASE("a replay equals the naive replay for every line and sector size") {
     check_equal(gpu, usual_regions);
 }
 
-TEST_CASE("a replay equals the naive replay for every placement") {
+TEST_CASE("a replay equals the naive replay for every placement", "[oracle]") {
     const auto sms = GENERATE(1u, 2u, 3u, 60u);
     const auto warps_per_sm = GENERATE(1u, 4u, 7u, 40u);
     const auto warps_per_cta = GENERATE(1u, 2u, 8u);
@@ -138,7 +138,7 @@ TEST_CASE("a replay equals the naive replay for every placement") {
     check_equal(gpu, usual_regions, 50, 12);
 }
 
-TEST_CASE("a replay equals the naive replay where objects straddle many lines or overlap") {
+TEST_CASE("a replay equals the naive replay where objects straddle many lines or overlap", "[oracle]") {
     Gpu gpu = small_gpu();
     check_equal(
         gpu,
@@ -152,7 +152,7 @@ TEST_CASE("a replay equals the naive replay where objects straddle many lines or
     check_equal(gpu, {region(ObjectKind::node, 0x1000000, 4096, 4096, 9)}, 6, 4);
 }
 
-TEST_CASE("a replay equals the naive replay near 2^48 and up to the last byte of 2^64") {
+TEST_CASE("a replay equals the naive replay near 2^48 and up to the last byte of 2^64", "[oracle]") {
     const std::uint64_t top = ~std::uint64_t{0} - 64 * 300 + 1;
     for (const auto index : {SetIndex::modulo, SetIndex::xor_fold}) {
         Gpu gpu = small_gpu();
@@ -163,12 +163,12 @@ TEST_CASE("a replay equals the naive replay near 2^48 and up to the last byte of
     }
 }
 
-TEST_CASE("a replay equals the naive replay where the lines of a launch need more than 32 bits") {
+TEST_CASE("a replay equals the naive replay where the lines of a launch need more than 32 bits", "[oracle]") {
     check_equal(small_gpu(), {region(ObjectKind::node, 0, 4096, 0xffffffffu, 0xffffffffu),
                               region(ObjectKind::texel, 1ull << 63, 4, 0xfffffff0u, 0x7fffffffu)});
 }
 
-TEST_CASE("a replay equals the naive replay on the reference traces", "[slow]") {
+TEST_CASE("a replay equals the naive replay on the reference traces", "[oracle][slow]") {
     const auto folder = reference_folder();
     if (!folder) {
         WARN("skipped: no reference traces; set RAYCACHE_REFERENCE to their folder");
