@@ -124,7 +124,7 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
     }
     Renderer renderer(scene, reference, request.repeats, "equal time", paths);
     for (std::size_t r = 0; r < rows.size(); ++r) {
-        QualityRow::EqualTime& same = rows[r].equal_time.emplace();
+        QualityRow::EqualTime& same = rows[r].equal_time.emplace(QualityRow::EqualTime{});
         same.spp = cases[r].strategy.parameters.spp;
         if (same.spp == rows[r].spp()) {
             same.errors = rows[r].errors;

@@ -206,8 +206,8 @@ std::vector<FieldError> measure_scenes(const TestScenes& scenes, std::uint32_t d
         std::vector<double> points(std::size_t{n} * dimensions);
         for (std::uint32_t pixel = range.begin(); pixel < range.end(); ++pixel) {
             source.fill(pixel, points);
-            const double u = (pixel % test_picture_width + 0.5) / test_picture_width,
-                         v = (pixel / test_picture_width + 0.5) / test_picture_width;
+            const std::uint32_t column = pixel % test_picture_width, row = pixel / test_picture_width;
+            const double u = (column + 0.5) / test_picture_width, v = (row + 0.5) / test_picture_width;
             for (std::size_t s = 0; s < scenes.size(); ++s) {
                 double sum = 0;
                 for (std::size_t at = 0; at < points.size(); at += dimensions)
