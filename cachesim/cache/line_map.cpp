@@ -40,7 +40,7 @@ std::uint32_t polynomial_remainder(std::uint64_t high, std::uint32_t low, unsign
     return rest;
 }
 
-LineMap::LineMap(const CacheGeometry& geometry)
+LineMap::LineMap(const CacheGeometry& geometry, std::uint64_t last_line)
     : geometry_(geometry),
       sets_(geometry.sets),
       by_sets_(geometry.sets),
@@ -64,7 +64,8 @@ LineMap::LineMap(const CacheGeometry& geometry)
         return;
     }
     form_ = Form::linear;
-    tables_.resize(static_cast<std::size_t>(8 - line_shift_ / 8));  // a line number has 64 - line_shift bits
+    const int bits = std::min(64 - line_shift_, static_cast<int>(std::bit_width(last_line)));
+    tables_.resize(static_cast<std::size_t>(std::max(1, (bits + 7) / 8)));
     for (std::size_t byte = 0; byte < tables_.size(); ++byte)
         for (std::uint64_t value = 1; value < 256; ++value) {
             const std::uint64_t low = value & (~value + 1);  // the lowest bit alone

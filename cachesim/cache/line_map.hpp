@@ -30,8 +30,11 @@ namespace raycache::cachesim {
 
 class LineMap {
 public:
-    /// The geometry must have passed find_problem().
-    explicit LineMap(const CacheGeometry&);
+    /// The geometry must have passed find_problem(). `last_line`: the highest line that it will be asked for.
+    explicit LineMap(const CacheGeometry&, std::uint64_t last_line = ~std::uint64_t{0});
+
+    /// Whether the map is line & (sets - 1).
+    bool is_low_bits() const { return form_ == Form::low_bits; }
 
     struct Place {
         std::uint32_t slice;

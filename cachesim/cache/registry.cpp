@@ -17,7 +17,7 @@ namespace {
 
 struct Entry {
     std::string_view name;
-    std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, const LineIds&, InstructionSet);
+    std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
 };
 
 /// Sorted by name.
@@ -30,10 +30,10 @@ constexpr Entry policies[] = {
 
 }  // namespace
 
-std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, const LineIds& ids,
+std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, std::uint64_t lines,
                                   InstructionSet instructions) {
     for (const Entry& policy : policies)
-        if (policy.name == geometry.policy) return policy.make(geometry, caches, ids, instructions);
+        if (policy.name == geometry.policy) return policy.make(geometry, caches, lines, instructions);
     throw Error(fmt::format("cache: expected a replacement policy out of {}, found \"{}\"",
                             fmt::join(cache_policies(), ", "), geometry.policy));
 }

@@ -10,9 +10,9 @@
 
 namespace raycache::cachesim {
 
-/// `caches` empty caches of this geometry for requests to the regions that `ids` numbers. Throws Error if the policy is
+/// `caches` empty caches of this geometry for lines whose numbers are below `lines`. Throws Error if the policy is
 /// unknown. The geometry must have passed find_problem().
-std::unique_ptr<Level> make_level(const CacheGeometry&, unsigned caches, const LineIds& ids,
+std::unique_ptr<Level> make_level(const CacheGeometry&, unsigned caches, std::uint64_t lines,
                                   InstructionSet = best_instruction_set());
 
 /// Names that CacheGeometry::policy may have, sorted.

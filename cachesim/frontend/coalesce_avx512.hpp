@@ -1,27 +1,28 @@
-// Coalescing in AVX-512, all lanes at once: the same lines and sectors in the same order as Coalescer without it.
+// Coalescing in AVX-512, sixteen lanes at once: the same look-ups in the same order as Coalescer without it.
+//
+// Most accesses of divergent rays have few lanes, so lanes of consecutive accesses are packed into one vector as long
+// as whole accesses fit.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
-#include "cachesim/cache/request.hpp"
+#include "cachesim/cache/lookups.hpp"
 #include "cachesim/frontend/region_layout.hpp"
+#include "cachesim/frontend/warp_access.hpp"
 
 namespace raycache::cachesim {
 
-/// What a warp access became.
-struct Coalesced {
-    std::size_t requests = 0;
-    unsigned sectors = 0;  ///< of all requests together
+/// Lanes of consecutive accesses on their way into vectors; contents are of no interest between calls.
+struct PackedLanes {
+    std::vector<std::uint32_t> keys, sectors;   ///< of each lane's line, or of both where its object straddles two
+    std::vector<std::uint32_t> begin, accesses;  ///< of each vector: its first lane, and whose that is
 };
 
-/// Whether coalesce_avx512() can do it. The machine must have InstructionSet::avx512.
-inline bool can_coalesce_avx512(const RegionLayout& layout, unsigned lanes) {
-    return layout.vectors && lanes <= (layout.aligned ? 16u : 8u);
-}
-
-/// `out` has room for 16 requests; those beyond the result's number are garbage.
-Coalesced coalesce_avx512(const RegionLayout&, const LineShape&, const std::uint32_t* elements, unsigned lanes,
-                          const Request& like, Request* out);
+/// Adds the look-ups of the accesses, numbered from `first` on. All regions must have RegionLayout::vectors, and the
+/// machine InstructionSet::avx512.
+void coalesce_avx512(std::span<const WarpAccess>, std::uint32_t first, const std::vector<RegionLayout>&,
+                     const LineShape&, PackedLanes&, Lookups& out);
 
 }  // namespace raycache::cachesim

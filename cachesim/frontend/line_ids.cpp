@@ -12,6 +12,8 @@ namespace raycache::cachesim {
 
 namespace {
 
+constexpr std::uint64_t most_ids = ~std::uint32_t{0};
+
 /// First and last byte, both included.
 struct Extent {
     std::uint64_t first = 0, last = 0;
@@ -44,18 +46,37 @@ LineIds::LineIds(const std::vector<traces::Region>& regions, std::uint32_t line_
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const Extent bytes = extent(regions, i);
         lines.push_back({bytes.first >> shift, bytes.last >> shift});
+        last_line_ = std::max(last_line_, lines.back().last);
     }
     std::vector<std::size_t> order(regions.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](auto a, auto b) { return lines[a].first < lines[b].first; });
 
+    constexpr std::uint64_t low_bits = (std::uint64_t{1} << equal_bits) - 1;
     std::uint64_t next = 0, offset = 0;  // next: first line number above all intervals so far
+    bool first = true;
     for (const std::size_t i : order) {
-        if (count_ == 0 || lines[i].first >= next) offset = lines[i].first - count_;  // a gap: close it
+        if (first || lines[i].first >= next) offset = (lines[i].first - bound_) & ~low_bits;  // a gap: close it
+        first = false;
         offsets_[i] = offset;
         next = std::max(next, lines[i].last + 1);
-        count_ = next - offset;
+        bound_ = std::max(bound_, lines[i].last - offset + 1);
+        if (bound_ >= most_ids || bound_ == 0) {
+            dense_ = false;
+            bound_ = most_ids;
+            return;
+        }
     }
+}
+
+std::uint32_t LineIds::number(std::uint64_t line) {
+    const auto [at, is_new] = numbers_.try_emplace(line, static_cast<std::uint32_t>(touched_.size()));
+    if (is_new) {
+        if (touched_.size() == most_ids)
+            throw Error("trace: expected at most 2^32 - 1 different cache lines in one launch; capture fewer warps");
+        touched_.push_back(line);
+    }
+    return at->second;
 }
 
 }  // namespace raycache::cachesim

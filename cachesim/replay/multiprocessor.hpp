@@ -9,12 +9,15 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cachesim/replay/hierarchy.hpp"
 #include "traces/record.hpp"
 
 namespace raycache::cachesim {
+
+using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
 
 class Multiprocessor {
 public:
@@ -39,6 +42,7 @@ public:
             Warp warp;
             warp.slot = cta_slot * warps_per_cta_ + static_cast<unsigned>(i);
             warp.l1 = warp.slot % l1_per_sm_;
+            warp.number = trace.warp;
             warp.next = trace.records.data();
             warp.end = warp.next + trace.records.size();
             warp.elements = trace.elements.data();
@@ -57,6 +61,7 @@ public:
         unsigned freed = none;
         while (round < end && !active_.empty() && freed == none) freed = issue(round++, memory);
         memory.end_sm(number_);
+        ended_.clear();
         if (freed != none) return freed;
         round = end;
         return std::nullopt;
@@ -69,6 +74,7 @@ private:
         std::uint32_t left = 0;                   ///< lanes of `next` that have not had their turn
         unsigned slot = 0;
         unsigned l1 = 0;
+        std::uint32_t number = 0;  ///< of the warp in its launch
     };
 
     static constexpr unsigned none = ~0u;
@@ -77,17 +83,14 @@ private:
     unsigned issue(std::size_t round, Hierarchy& memory) {
         if (turn_ >= active_.size()) turn_ = 0;
         Warp& warp = active_[turn_];
-        // The turns of a warp are far apart: fetch what the next but a few will read.
-        const std::size_t ahead = turn_ + 4;
-        const Warp& later = active_[ahead < active_.size() ? ahead : 0];
-        __builtin_prefetch(later.next + 1);
-        __builtin_prefetch(later.elements);
-        __builtin_prefetch(later.elements + 16);
+        // The elements are read when the window ends; of the records, these are read a few turns on.
+        __builtin_prefetch(warp.elements);
+        __builtin_prefetch(warp.next + 8);
         traces::Record record = *warp.next;
         record.mask = first_vector(warp.left);
         warp.left &= ~record.mask;
         if (!warp.left) ++warp.next;
-        memory.access(record, warp.elements, traces_[warp.slot], number_, warp.l1, round);
+        memory.access(record, warp.elements, warp.number, warp.l1, round);
         warp.elements += record.lanes();
         resume_slot_ = warp.slot + 1;
         if (warp.left || advance_to_access(warp, memory)) {
@@ -95,7 +98,7 @@ private:
             return none;
         }
         const unsigned cta_slot = warp.slot / warps_per_cta_;
-        traces_[warp.slot].reset();
+        ended_.push_back(std::move(traces_[warp.slot]));
         active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
         return --unfinished_[cta_slot] > 0 ? none : cta_slot;
     }
@@ -121,6 +124,7 @@ private:
     unsigned number_, warps_per_cta_, l1_per_sm_, simd_width_;
     std::vector<Warp> active_;          ///< unfinished warps by slot
     std::vector<WarpPointer> traces_;   ///< by slot: keeps the records of an unfinished warp
+    std::vector<WarpPointer> ended_;    ///< warps whose elements are still to be read
     std::size_t turn_ = 0;              ///< place in active_ of the next to issue; its size means 0
     unsigned resume_slot_ = 0;          ///< the next to issue has this slot or a later one, or the turn wraps
     std::vector<unsigned> unfinished_;  ///< unfinished warps of each CTA slot

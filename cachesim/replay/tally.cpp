@@ -2,7 +2,7 @@
 
 namespace raycache::cachesim {
 
-Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t levels) const {
+Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t levels) {
     struct Fields {
         std::uint64_t Counters::*asked, Counters::*found;
     };
@@ -31,16 +31,15 @@ std::vector<RayGroup> Tally::groups(std::size_t levels) const {
     std::vector<RayGroup> result;
     for (unsigned ray = 0; ray < traces::ray_types; ++ray) {
         for (unsigned bounce = 0; bounce <= traces::max_bounce; ++bounce) {
-            const std::uint16_t first = first_group_[ray * (traces::max_bounce + 1) + bounce];
+            const std::uint32_t first = first_group_[ray * (traces::max_bounce + 1) + bounce];
             if (first == absent) continue;
             RayGroup group;
             group.ray = static_cast<traces::RayType>(ray);
             group.bounce = static_cast<std::uint8_t>(bounce);
-            for (unsigned kind = 0; kind < traces::object_kinds; ++kind) {
-                const Sums& sums = sums_[first + kind];
-                group.by_kind[kind] = counters(sums, static_cast<traces::ObjectKind>(kind), levels);
-                group.rays += sums.rays;
-            }
+            for (std::size_t region = 0; region < kinds_.size(); ++region)
+                group.by_kind[static_cast<unsigned>(kinds_[region])] +=
+                    counters(sums_[first + region], kinds_[region], levels);
+            group.rays = sums_[first + kinds_.size()].rays;
             result.push_back(group);
         }
     }

@@ -8,29 +8,29 @@
 #include <cstdint>
 #include <vector>
 
-#include "cachesim/cache/request.hpp"
-#include "cachesim/frontend/line_ids.hpp"
-
 namespace raycache::cachesim {
 
 class WriteBack {
 public:
-    explicit WriteBack(const LineIds& ids) : ids_(ids), changed_(ids.count()) {}
-
-    /// `answer`: of the level, to a write of `sectors`. Returns those that will have to be written to DRAM once more.
-    std::uint32_t write(const Request& answer, std::uint32_t sectors) {
-        std::uint32_t& changed = changed_[answer.line - ids_.offset(answer.region)];
-        changed &= ~answer.sectors;  // evicted since
+    /// A write of sectors of a line, of which the cache fetched some. Returns those that will have to be written to
+    /// DRAM once more.
+    std::uint32_t write(std::uint32_t line, std::uint32_t sectors, std::uint32_t fetched) {
+        std::uint32_t& changed = of(line);
+        changed &= ~fetched;  // evicted since
         const std::uint32_t more = sectors & ~changed;
         changed |= sectors;
         return more;
     }
 
-    /// `answer`: of the level, to a read.
-    void read(const Request& answer) { changed_[answer.line - ids_.offset(answer.region)] &= ~answer.sectors; }
+    /// A read, for which the cache fetched sectors.
+    void read(std::uint32_t line, std::uint32_t fetched) { of(line) &= ~fetched; }
 
 private:
-    LineIds ids_;
+    std::uint32_t& of(std::uint32_t line) {
+        if (line >= changed_.size()) changed_.resize(2 * std::size_t{line} + 1);
+        return changed_[line];
+    }
+
     std::vector<std::uint32_t> changed_;  ///< by line id: sectors
 };
 

@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "cachesim/cache/policies/lru_avx512.hpp"
 #include "cachesim/cache/policies/lru_few_ways.hpp"
 #include "cachesim/cache/policies/lru_many_ways.hpp"
+#include "cachesim/cache/policies/lru_many_ways_avx512.hpp"
 #include "cachesim/cache/registry.hpp"
+#include "look_up.hpp"
 #include "oracle.hpp"
 #include "traces/error.hpp"
 
@@ -22,90 +26,118 @@ CacheGeometry geometry(std::uint64_t sets, std::uint64_t ways, SetIndex index = 
     return g;
 }
 
-/// Ids of the first lines of the address space.
-LineIds lines(std::uint32_t count) {
-    return LineIds({{raycache::traces::ObjectKind::node, 0, 128, 128, count, 0, {}}}, 128);
-}
-
-/// The sectors that were missing.
-std::uint32_t look_up(Level& level, std::uint64_t line, std::uint32_t sectors, std::uint32_t cache = 0) {
-    Request request{line, sectors, 0, 0, 0};
-    level.process({&request, 1}, cache);
-    return request.sectors;
-}
-
 void fills_and_evicts_by_hand(Level&& level) {
-    CHECK(look_up(level, 0, 0b0011) == 0b0011);  // a miss fetches what is wanted
-    CHECK(look_up(level, 0, 0b0011) == 0);
-    CHECK(look_up(level, 0, 0b1110) == 0b1100);  // a sector miss fetches what is missing
-    CHECK(look_up(level, 0, 0b1111) == 0);
-    CHECK(look_up(level, 7, 0b0001) == 0b0001);
-    CHECK(look_up(level, 0, 0b0001) == 0);       // 7 is now the older
-    CHECK(look_up(level, 9, 0b0001) == 0b0001);  // evicts 7
-    CHECK(look_up(level, 0, 0b1111) == 0);
-    CHECK(look_up(level, 7, 0b0001) == 0b0001);  // evicts 9
-    CHECK(look_up(level, 9, 0b0001) == 0b0001);  // evicts 0 with all its sectors
-    CHECK(look_up(level, 0, 0b1000) == 0b1000);
-    CHECK(look_up(level, 0, 0b0001) == 0b0001);
+    const CacheGeometry g = geometry(1, 2);
+    CHECK(look_up(level, g, 0, 0b0011) == 0b0011);  // a miss fetches what is wanted
+    CHECK(look_up(level, g, 0, 0b0011) == 0);
+    CHECK(look_up(level, g, 0, 0b1110) == 0b1100);  // a sector miss fetches what is missing
+    CHECK(look_up(level, g, 0, 0b1111) == 0);
+    CHECK(look_up(level, g, 7, 0b0001) == 0b0001);
+    CHECK(look_up(level, g, 0, 0b0001) == 0);       // 7 is now the older
+    CHECK(look_up(level, g, 9, 0b0001) == 0b0001);  // evicts 7
+    CHECK(look_up(level, g, 0, 0b1111) == 0);
+    CHECK(look_up(level, g, 7, 0b0001) == 0b0001);  // evicts 9
+    CHECK(look_up(level, g, 9, 0b0001) == 0b0001);  // evicts 0 with all its sectors
+    CHECK(look_up(level, g, 0, 0b1000) == 0b1000);
+    CHECK(look_up(level, g, 0, 0b0001) == 0b0001);
 }
 
 }  // namespace
 
 TEST_CASE("a tiny cache fills and evicts as computed by hand") {
-    fills_and_evicts_by_hand(LevelWith<LruFewWays>(geometry(1, 2), 1, lines(10)));
-    fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint32_t, std::uint16_t>>(geometry(1, 2), 1, lines(10)));
-    fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint64_t, std::uint32_t>>(geometry(1, 2), 1, lines(10)));
-    if (best_instruction_set() >= InstructionSet::avx512)
-        fills_and_evicts_by_hand(std::move(*make_lru_avx512(geometry(1, 2), 1, lines(10))));
+    fills_and_evicts_by_hand(LevelWith<LruFewWays>(geometry(1, 2), 1));
+    fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint16_t>>(geometry(1, 2), 1));
+    fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint32_t>>(geometry(1, 2), 1));
+    if (best_instruction_set() < InstructionSet::avx512) return;
+    fills_and_evicts_by_hand(std::move(*make_lru_avx512(geometry(1, 2), 1)));
+    fills_and_evicts_by_hand(std::move(*make_lru_many_ways_avx512(geometry(1, 2), 1)));
 }
 
 TEST_CASE("caches of a level share nothing") {
-    const auto level = make_level(geometry(2, 2), 3, lines(100));
-    CHECK(look_up(*level, 5, 1, 0) == 1);
-    CHECK(look_up(*level, 5, 1, 2) == 1);
-    CHECK(look_up(*level, 5, 1, 2) == 0);
-    CHECK(look_up(*level, 5, 1, 1) == 1);
+    const CacheGeometry g = geometry(2, 2);
+    const auto level = make_level(g, 3, 100);
+    CHECK(look_up(*level, g, 5, 1, 0) == 1);
+    CHECK(look_up(*level, g, 5, 1, 2) == 1);
+    CHECK(look_up(*level, g, 5, 1, 2) == 0);
+    CHECK(look_up(*level, g, 5, 1, 1) == 1);
 }
 
 TEST_CASE("a batch is the same as one look-up after the other") {
-    for (const InstructionSet instructions : instruction_sets()) {
-        const auto one = make_level(geometry(3, 5), 4, lines(200), instructions);
-        const auto batch = make_level(geometry(3, 5), 4, lines(200), instructions);
-        std::mt19937 random(3);
-        std::vector<Request> requests(1000);
-        std::vector<std::uint32_t> expected;
-        for (Request& r : requests) {
-            r.line = random() % 200;
-            r.sectors = 1 + random() % 15;
-            r.cache = random() % 2;
-            expected.push_back(look_up(*one, r.line, r.sectors, 2 + r.cache));
+    for (const std::uint64_t ways : {5, 100})
+        for (const InstructionSet instructions : instruction_sets()) {
+            const CacheGeometry g = geometry(3, ways);
+            const auto one = make_level(g, 4, 2000, instructions), batch = make_level(g, 4, 2000, instructions);
+            std::mt19937 random(3);
+            std::vector<std::uint32_t> sets, lines, sectors, expected;
+            for (int i = 0; i < 10000; ++i) {
+                const std::uint32_t cache = 2 + random() % 2, line = random() % static_cast<unsigned>(8 * ways);
+                lines.push_back(line);
+                sets.push_back(cache * 3 + line % 3);
+                sectors.push_back(1 + random() % 15);
+                expected.push_back(look_up(*one, g, line, sectors.back(), cache));
+            }
+            batch->process(sets.data(), lines.data(), sectors.data(), lines.size());
+            CHECK(sectors == expected);
         }
-        batch->process(requests, 2);
-        for (std::size_t i = 0; i < expected.size(); ++i) CHECK(requests[i].sectors == expected[i]);
-    }
 }
 
 TEST_CASE("with the same sets, more ways never miss more under LRU") {
     std::mt19937 random(9);
-    std::vector<Request> requests(20000);
-    for (Request& r : requests) {
-        r.line = random() % (random() % 2 ? 40 : 600);
-        r.sectors = 1u << random() % 4;
+    std::vector<std::uint32_t> sets, lines, wanted;
+    for (int i = 0; i < 20000; ++i) {
+        lines.push_back(random() % (random() % 2 ? 40 : 600));
+        sets.push_back(lines.back() % 4);
+        wanted.push_back(1u << random() % 4);
     }
-    std::size_t before = requests.size();
+    std::ptrdiff_t before = 20000;
     for (const std::uint64_t ways : {1, 2, 3, 4, 6, 8, 12, 16, 33, 64, 65, 128, 300}) {
-        std::vector<Request> answers = requests;
-        make_level(geometry(4, ways), 1, lines(600))->process(answers, 0);
-        const auto count = static_cast<std::size_t>(
-            std::count_if(answers.begin(), answers.end(), [](const Request& r) { return r.sectors != 0; }));
+        std::vector<std::uint32_t> fetched = wanted;
+        make_level(geometry(4, ways), 1, 600)->process(sets.data(), lines.data(), fetched.data(), lines.size());
+        const auto missed = std::count_if(fetched.begin(), fetched.end(), [](std::uint32_t f) { return f != 0; });
         CAPTURE(ways);
-        CHECK(count <= before);
-        before = count;
+        CHECK(missed <= before);
+        before = missed;
+    }
+}
+
+/// By lists: the look-ups of a set, newest first.
+std::uint32_t naive_lru(std::vector<std::pair<std::uint32_t, std::uint32_t>>& set, std::size_t ways, std::uint32_t line,
+                        std::uint32_t wanted) {
+    std::uint32_t present = 0;
+    const auto at = std::find_if(set.begin(), set.end(), [&](const auto& l) { return l.first == line; });
+    if (at != set.end()) {
+        present = at->second;
+        set.erase(at);
+    } else if (set.size() == ways) {
+        set.pop_back();
+    }
+    set.insert(set.begin(), {line, present | wanted});
+    return wanted & ~present;
+}
+
+TEST_CASE("a cache of many ways forgets what was used least recently, over more look-ups than its clock counts",
+          "[slow]") {
+    if (best_instruction_set() < InstructionSet::avx512) return;
+    const CacheGeometry g = geometry(2, 70);
+    const auto level = make_lru_many_ways_avx512(g, 1);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> naive[2];
+    std::mt19937 random(5);
+    std::vector<std::uint32_t> sets(1 << 16), lines(sets.size()), sectors(sets.size()), expected(sets.size());
+    for (int batch = 0; batch < 300; ++batch) {  // 2^24 look-ups, and then some
+        for (std::size_t i = 0; i < sets.size(); ++i) {
+            // One set is asked seldom, so its lines grow old.
+            lines[i] = random() % 64 == 0 ? 2 * (random() % 80) + 1 : 2 * (random() % 90);
+            sets[i] = lines[i] % 2;
+            sectors[i] = 1 + random() % 15;
+            expected[i] = naive_lru(naive[sets[i]], 70, lines[i], sectors[i]);
+        }
+        level->process(sets.data(), lines.data(), sectors.data(), sets.size());
+        REQUIRE(sectors == expected);
     }
 }
 
 TEST_CASE("an unknown replacement policy is refused by name") {
     CacheGeometry g = geometry(1, 1);
     g.policy = "clairvoyant";
-    CHECK_THROWS_WITH(make_level(g, 1, lines(1)), Catch::Contains("lru") && Catch::Contains("clairvoyant"));
+    CHECK_THROWS_WITH(make_level(g, 1, 1), Catch::Contains("lru") && Catch::Contains("clairvoyant"));
 }

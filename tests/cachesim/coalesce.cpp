@@ -23,23 +23,31 @@ struct Touched {
     auto operator<=>(const Touched&) const = default;
 };
 
+/// What accesses to one region become, those of each access for itself.
+std::vector<std::vector<Touched>> coalesce_all(const traces::Region& r,
+                                               const std::vector<std::vector<std::uint32_t>>& accesses,
+                                               std::uint32_t line, std::uint32_t sector, InstructionSet instructions) {
+    constexpr std::uint32_t first = 2300;
+    LineIds ids({r}, line);
+    Coalescer coalescer({r}, LineShape(line, sector), ids, instructions);
+    std::vector<WarpAccess> list;
+    for (const auto& elements : accesses)
+        list.push_back({elements.data(), static_cast<std::uint32_t>((std::uint64_t{1} << elements.size()) - 1), 0});
+    Lookups out;
+    out.reserve(1);
+    out.add(7, 7, 7);  // is left alone
+    coalescer(list, first, out);
+    CHECK((out.lines[0] == 7 && out.sectors[0] == 7 && out.accesses[0] == 7));
+    std::vector<std::vector<Touched>> touched(accesses.size());
+    for (std::size_t i = 1; i < out.count; ++i) {
+        if (i > 1) CHECK(out.accesses[i - 1] <= out.accesses[i]);
+        touched.at(out.accesses[i] - first).push_back({ids.line(out.lines[i], 0), out.sectors[i]});
+    }
+    return touched;
+}
 std::vector<Touched> coalesce(const traces::Region& r, const std::vector<std::uint32_t>& elements, std::uint32_t line,
                               std::uint32_t sector, InstructionSet instructions) {
-    Coalescer coalescer({r}, LineShape(line, sector), instructions);
-    std::vector<Request> out(coalescer.max_requests());
-    Request like;
-    like.group = 2303;
-    like.cache = 7;
-    const auto made = coalescer(elements.data(), static_cast<unsigned>(elements.size()), like, out.data());
-    std::vector<Touched> touched;
-    unsigned sectors = 0;
-    for (std::size_t i = 0; i < made.requests; ++i) {
-        touched.push_back({out[i].line, out[i].sectors});
-        sectors += static_cast<unsigned>(std::popcount(out[i].sectors));
-        CHECK((out[i].group == 2303 && out[i].region == 0 && out[i].cache == 7));
-    }
-    CHECK(sectors == made.sectors);
-    return touched;
+    return coalesce_all(r, {elements}, line, sector, instructions).front();
 }
 
 /// By every instruction set of this machine, which must agree.
@@ -124,20 +132,51 @@ TEST_CASE("every instruction set coalesces alike, for every layout of a region")
             }
 }
 
+TEST_CASE("many accesses become what each becomes alone") {
+    std::mt19937 random(6);
+    for (const auto& r : {nodes, triangles, region(ObjectKind::texel, 0x200000, 4, 4, 1000),
+                          region(ObjectKind::node, 0x200010, 100, 36, 1000)})
+        for (const InstructionSet instructions : instruction_sets()) {
+            std::vector<std::vector<std::uint32_t>> accesses(500);
+            for (auto& elements : accesses) {
+                elements.resize(1 + (random() % 3 ? random() % 4 : random() % 32));
+                for (auto& e : elements) e = random() % (random() % 2 ? 8 : r.count);
+            }
+            const auto together = coalesce_all(r, accesses, 128, 32, instructions);
+            for (std::size_t i = 0; i < accesses.size(); ++i)
+                REQUIRE(together[i] == coalesce(r, accesses[i], 128, 32, InstructionSet::x86_64_v2));
+        }
+}
+
 TEST_CASE("the last byte of the address space is an address like any other") {
     const auto r = region(ObjectKind::node, ~std::uint64_t{0} - 127, 64, 64, 2);
     CHECK(coalesce(r, {1, 0}) == std::vector<Touched>{{~std::uint64_t{0} / 128, 0b1111}});
 }
 
-TEST_CASE("line ids are dense and regions that share a line share its id") {
+TEST_CASE("line ids leave out the gaps, keep the low bits, and are shared by regions that share lines") {
     const std::vector<traces::Region> regions{region(ObjectKind::texel, 0x7f0000000000, 64, 64, 4),
-                                              region(ObjectKind::node, 0x1000, 64, 64, 4),
-                                              region(ObjectKind::triangle, 0x1040, 64, 64, 5)};
-    const LineIds ids(regions, 128);
-    CHECK(ids.count() == 5);
-    CHECK(ids.offset(1) == 0x1000 / 128);
-    CHECK(ids.offset(2) == ids.offset(1));
-    CHECK(0x7f0000000000 / 128 - ids.offset(0) == 3);
+                                              region(ObjectKind::node, 0x100001000, 64, 64, 4),
+                                              region(ObjectKind::triangle, 0x100001040, 64, 64, 5)};
+    LineIds ids(regions, 128);
+    REQUIRE(ids.dense());
+    CHECK(ids.id(0x100001000 / 128, 1) == 0x1000 / 128);
+    CHECK(ids.id(0x100001040 / 128, 2) == ids.id(0x100001000 / 128, 1));
+    const std::uint64_t texels = 0x7f0000000000 / 128;
+    CHECK(ids.id(texels, 0) == 1u << LineIds::equal_bits);  // the next multiple, as in `texels`
+    CHECK(ids.bound() == (1u << LineIds::equal_bits) + 2);
+    CHECK(ids.line(ids.id(texels + 1, 0), 0) == texels + 1);
+    CHECK(ids.last_line() == texels + 1);
+}
+
+TEST_CASE("regions of too many lines are numbered as they are touched") {
+    const std::vector<traces::Region> regions{region(ObjectKind::node, 0, 64, 0xffffffff, 0xffffffff),
+                                              region(ObjectKind::node, 1ull << 63, 64, 64, 4)};
+    LineIds ids(regions, 128);
+    REQUIRE(!ids.dense());
+    CHECK(ids.id(5, 0) == 0);
+    CHECK(ids.id(1ull << 56, 1) == 1);
+    CHECK(ids.id(5, 1) == 0);
+    CHECK(ids.line(1, 1) == 1ull << 56);
 }
 
 TEST_CASE("impossible regions are refused") {

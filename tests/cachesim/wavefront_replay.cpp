@@ -131,16 +131,14 @@ TEST_CASE("kernels of many warps count what they count alone, but for what L2 ke
 
 TEST_CASE("writes to DRAM are those of a cache with dirty bits") {
     std::mt19937 random(7);
-    const LineIds ids(buffers, 128);
-    WriteBack write_back(ids);
+    WriteBack write_back;
     struct Line {
-        std::uint64_t line;
-        std::uint32_t present, dirty;
+        std::uint32_t line, present, dirty;
     };
     std::list<Line> cache;  // newest first, 8 lines
     std::uint64_t expected = 0, found = 0;
     for (int i = 0; i < 50000; ++i) {
-        const std::uint64_t line = (0x200000 >> 7) + random() % 20;
+        const std::uint32_t line = random() % 20;
         const std::uint32_t sectors = 1 + random() % 15;
         auto at = std::find_if(cache.begin(), cache.end(), [&](const Line& l) { return l.line == line; });
         if (at == cache.end()) {
@@ -153,17 +151,13 @@ TEST_CASE("writes to DRAM are those of a cache with dirty bits") {
             cache.splice(cache.begin(), cache, at);
         }
         Line& now = cache.front();
-        Request answer;
-        answer.line = line;
-        answer.sectors = sectors & ~now.present;
+        const std::uint32_t fetched = sectors & ~now.present;
         now.present |= sectors;
         if (random() % 2 == 0) {
             now.dirty |= sectors;
-            answer.region = put;
-            found += static_cast<unsigned>(std::popcount(write_back.write(answer, sectors)));
+            found += static_cast<unsigned>(std::popcount(write_back.write(line, sectors, fetched)));
         } else {
-            answer.region = get;
-            write_back.read(answer);
+            write_back.read(line, fetched);
         }
     }
     for (const Line& line : cache) expected += static_cast<unsigned>(std::popcount(line.dirty));

@@ -4,8 +4,8 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, unsigned caches, const LineIds& ids, InstructionSet) {
-    return make_in_place<FifoOrder>(geometry, caches, ids);
+std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/, InstructionSet) {
+    return make_in_place<FifoOrder>(geometry, caches);
 }
 
 }  // namespace raycache::cachesim

@@ -29,6 +29,6 @@ private:
     std::vector<std::uint32_t> oldest_;  ///< by set: the way whose line came first
 };
 
-std::unique_ptr<Level> make_fifo(const CacheGeometry&, unsigned caches, const LineIds&, InstructionSet);
+std::unique_ptr<Level> make_fifo(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
 
 }  // namespace raycache::cachesim

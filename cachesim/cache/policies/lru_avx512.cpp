@@ -1,5 +1,6 @@
 #include "cachesim/cache/policies/lru_avx512.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -13,34 +14,24 @@ namespace {
 template <unsigned vectors>
 class LruAvx512 final : public Level {
 public:
-    LruAvx512(const CacheGeometry& geometry, unsigned caches, const LineIds& ids)
-        : ids_(ids),
-          map_(geometry),
-          fill_(geometry),
-          sets_per_cache_(caches > 1 ? geometry.slices * geometry.sets : 0),
+    LruAvx512(const CacheGeometry& geometry, unsigned caches)
+        : fill_(geometry),
           near_(geometry.slices * geometry.sets * sizeof(Set) <= near),
           oldest_(std::uint64_t{1} << (geometry.ways - 1)),
           sector_bits_(geometry.line_bytes / geometry.sector_bytes),
           sets_(geometry.slices * geometry.sets * caches) {}
 
-    RAYCACHE_AVX512 void process(std::span<Request> requests, std::uint32_t first_cache) override {
-        Set* const first = sets_.data() + first_cache * sets_per_cache_;
+    RAYCACHE_AVX512 void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
+                                 std::size_t count) override {
         if (near_) {
-            for (Request& request : requests) {
-                const std::uint64_t set = request.cache * sets_per_cache_ + map_(request.line);
-                request.sectors = fetch(first[set], request);
-            }
+            for (std::size_t i = 0; i < count; ++i) sectors[i] = fetch(sets_[sets[i]], lines[i], sectors[i]);
             return;
         }
-        std::array<Set*, 64> sets;  // a run of look-ups ahead, so that their memory is on its way
-        while (!requests.empty()) {
-            const auto run = requests.first(std::min(requests.size(), sets.size()));
-            for (std::size_t i = 0; i < run.size(); ++i) {
-                sets[i] = first + run[i].cache * sets_per_cache_ + map_(run[i].line);
-                for (unsigned v = 0; v < vectors; ++v) __builtin_prefetch(&sets[i]->words[v * 16], 1);
-            }
-            for (std::size_t i = 0; i < run.size(); ++i) run[i].sectors = fetch(*sets[i], run[i]);
-            requests = requests.subspan(run.size());
+        constexpr std::size_t ahead = 32;  // so that their memory is on its way
+        for (std::size_t i = 0; i < std::min(ahead, count); ++i) prefetch(sets[i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            prefetch(sets[std::min(i + ahead, count - 1)]);
+            sectors[i] = fetch(sets_[sets[i]], lines[i], sectors[i]);
         }
     }
 
@@ -52,19 +43,20 @@ private:
         std::uint32_t words[vectors * 16] = {};
     };
 
-    /// The missing sectors and what Fill adds.
-    RAYCACHE_AVX512 std::uint32_t fetch(Set& set, const Request& request) const {
-        const std::uint32_t missing = access(set, request);
-        if (!fill_.widens() || !missing) return missing;
-        Request neighbours = request;
-        neighbours.sectors = fill_.pieces(missing);
-        return missing | access(set, neighbours);
+    void prefetch(std::uint32_t set) const {
+        for (unsigned v = 0; v < vectors; ++v) __builtin_prefetch(&sets_[set].words[v * 16], 1);
     }
 
-    RAYCACHE_AVX512 std::uint32_t access(Set& set, const Request& request) const {
+    /// The missing sectors and what Fill adds.
+    RAYCACHE_AVX512 std::uint32_t fetch(Set& set, std::uint32_t line, std::uint32_t wanted) const {
+        const std::uint32_t missing = access(set, line, wanted);
+        if (!fill_.widens() || !missing) return missing;
+        return missing | access(set, line, fill_.pieces(missing));
+    }
+
+    RAYCACHE_AVX512 std::uint32_t access(Set& set, std::uint32_t line, std::uint32_t sectors) const {
         const std::uint32_t sector_mask = (1u << sector_bits_) - 1;
-        const std::uint32_t tag = static_cast<std::uint32_t>(request.line - ids_.offset(request.region))
-                                  << sector_bits_;
+        const std::uint32_t tag = line << sector_bits_;
         const __m512i tag_mask = _mm512_set1_epi32(static_cast<int>(~sector_mask));
         const __m512i wanted = _mm512_set1_epi32(static_cast<int>(tag));
         __m512i words[vectors];
@@ -79,20 +71,17 @@ private:
         const auto equal = static_cast<std::int32_t>((difference >> sector_bits_) - 1) >> 31;
         const std::uint32_t present = difference & static_cast<std::uint32_t>(equal);
         const std::uint64_t moved = candidates ^ (candidates - 1);  // this way and all newer ones
-        __m512i before = _mm512_set1_epi32(static_cast<int>(tag | present | request.sectors));
+        __m512i before = _mm512_set1_epi32(static_cast<int>(tag | present | sectors));
         for (unsigned v = 0; v < vectors; ++v) {
             const auto here = static_cast<__mmask16>(moved >> (v * 16));
             const __m512i shifted = _mm512_mask_alignr_epi32(words[v], here, words[v], before, 15);
             _mm512_store_si512(&set.words[v * 16], shifted);
             before = words[v];
         }
-        return request.sectors & ~present;
+        return sectors & ~present;
     }
 
-    LineIds ids_;
-    LineMap map_;
     Fill fill_;
-    std::uint64_t sets_per_cache_;  ///< 0 for a shared level
     bool near_;
     std::uint64_t oldest_;  ///< bit of the oldest way
     unsigned sector_bits_;
@@ -101,16 +90,16 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Level> make_lru_avx512(const CacheGeometry& geometry, unsigned caches, const LineIds& ids) {
+std::unique_ptr<Level> make_lru_avx512(const CacheGeometry& geometry, unsigned caches) {
     switch ((geometry.ways + 15) / 16) {
         case 1:
-            return std::make_unique<LruAvx512<1>>(geometry, caches, ids);
+            return std::make_unique<LruAvx512<1>>(geometry, caches);
         case 2:
-            return std::make_unique<LruAvx512<2>>(geometry, caches, ids);
+            return std::make_unique<LruAvx512<2>>(geometry, caches);
         case 3:
-            return std::make_unique<LruAvx512<3>>(geometry, caches, ids);
+            return std::make_unique<LruAvx512<3>>(geometry, caches);
         default:
-            return std::make_unique<LruAvx512<4>>(geometry, caches, ids);
+            return std::make_unique<LruAvx512<4>>(geometry, caches);
     }
 }
 

@@ -8,7 +8,7 @@
 
 namespace raycache::cachesim {
 
-/// At most 64 ways, and ids that LruFewWays::fits(). Only for machines with InstructionSet::avx512.
-std::unique_ptr<Level> make_lru_avx512(const CacheGeometry&, unsigned caches, const LineIds&);
+/// At most 64 ways, and lines that LruFewWays::fits(). Only for machines with InstructionSet::avx512.
+std::unique_ptr<Level> make_lru_avx512(const CacheGeometry&, unsigned caches);
 
 }  // namespace raycache::cachesim

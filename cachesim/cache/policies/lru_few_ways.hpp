@@ -1,5 +1,5 @@
 // Least recently used, for few ways: a set is an array of its lines in order of last use, newest first, searched and
-// shifted by vector instructions. Tag and sectors share a 32-bit word, so line ids must be below 2^(32 - sectors).
+// shifted by vector instructions. Tag and sectors share a 32-bit word, so line numbers must be below 2^(32 - sectors).
 #pragma once
 
 #include <emmintrin.h>
@@ -19,17 +19,17 @@ public:
           sector_bits_(sectors_per_line),
           words_(sets * blocks_, Block{}) {}
 
-    /// Whether ids below `lines` leave room for the sectors in a word.
+    /// Whether lines below `lines` leave room for the sectors in a word.
     static bool fits(std::uint64_t lines, unsigned sectors_per_line) {
         return sectors_per_line < 32 && lines <= std::uint64_t{1} << (32 - sectors_per_line);
     }
 
-    void prefetch(std::uint64_t set, std::uint64_t /*id*/) const { __builtin_prefetch(&words_[set * blocks_], 1); }
+    void prefetch(std::uint64_t set, std::uint32_t /*line*/) const { __builtin_prefetch(&words_[set * blocks_], 1); }
 
     /// An empty way is the word 0: no sectors. If it is taken for line 0 it is filled as any other empty way would be.
-    std::uint32_t access(std::uint64_t set, std::uint64_t id, std::uint32_t sectors) {
+    std::uint32_t access(std::uint64_t set, std::uint32_t line, std::uint32_t sectors) {
         Block* const block = &words_[set * blocks_];
-        const std::uint32_t tag = static_cast<std::uint32_t>(id) << sector_bits_;
+        const std::uint32_t tag = line << sector_bits_;
         const std::uint32_t sector_mask = (1u << sector_bits_) - 1;
         const __m128i tag_mask = _mm_set1_epi32(static_cast<int>(~sector_mask));
         const __m128i wanted = _mm_set1_epi32(static_cast<int>(tag));

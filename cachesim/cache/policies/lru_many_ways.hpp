@@ -1,5 +1,5 @@
-// Least recently used, for many ways and any line numbers: a hash table finds the line, a ring of the set's ways keeps
-// the order of last use. Every look-up takes constant time, whatever the associativity.
+// Least recently used, for many ways: a hash table finds the line, a ring of the set's ways keeps the order of last use.
+// Every look-up takes constant time, whatever the associativity.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 
 namespace raycache::cachesim {
 
-/// `Id` holds every id, `Place` every way of one set and one more. A set is self-contained: the smaller they are, the
-/// more of it stays in the caches of the machine.
-template <class Id, class Place>
+/// `Place` holds every way of one set and one more. A set is self-contained: the smaller a place is, the more of it stays
+/// in the caches of the machine.
+template <class Place>
 class LruManyWays {
 public:
     LruManyWays(std::uint64_t sets, std::uint64_t ways, unsigned /*sectors_per_line*/)
@@ -27,20 +27,19 @@ public:
         }
     }
 
-    void prefetch(std::uint64_t set, std::uint64_t id) const {
-        __builtin_prefetch(&chains_[set * chains_per_set_ + bucket(static_cast<Id>(id))]);
+    void prefetch(std::uint64_t set, std::uint32_t line) const {
+        __builtin_prefetch(&chains_[set * chains_per_set_ + bucket(line)]);
         __builtin_prefetch(&newest_[set], 1);
     }
 
-    std::uint32_t access(std::uint64_t set, std::uint64_t long_id, std::uint32_t sectors) {
-        const Id id = static_cast<Id>(long_id);
+    std::uint32_t access(std::uint64_t set, std::uint32_t line, std::uint32_t sectors) {
         Way* const ways = &ways_[set * ways_per_set_];
         Place* const chains = &chains_[set * chains_per_set_];
         Place& newest = newest_[set];
-        Place& chain = chains[bucket(id)];
+        Place& chain = chains[bucket(line)];
         for (Place at = chain; at != none; at = ways[at].next) {
             Way& way = ways[at];
-            if (way.id != id) continue;
+            if (way.line != line) continue;
             const std::uint32_t missing = sectors & ~way.sectors;
             way.sectors |= sectors;
             if (at != newest) make_newest(ways, newest, at);
@@ -50,12 +49,12 @@ public:
         const Place victim = ways[newest].newer;
         Way& way = ways[victim];
         if (way.sectors) {
-            Place* link = &chains[bucket(way.id)];
+            Place* link = &chains[bucket(way.line)];
             while (*link != victim) link = &ways[*link].next;
             *link = way.next;
         }
         newest = victim;
-        way.id = id;
+        way.line = line;
         way.sectors = sectors;
         way.next = chain;
         chain = victim;
@@ -65,14 +64,14 @@ public:
 private:
     static constexpr Place none = static_cast<Place>(~Place{0});
     struct Way {
-        Id id = 0;
+        std::uint32_t line = 0;
         std::uint32_t sectors = 0;   ///< 0: empty, in no chain
         Place older = 0, newer = 0;  ///< the ring of the set; the newest's `newer` is the oldest
         Place next = none;           ///< the chain of the bucket
     };
 
     /// Multiplicative hashing (Knuth, The Art of Computer Programming 3, section 6.4).
-    std::uint64_t bucket(std::uint64_t id) const { return (id * 0x9e3779b97f4a7c15ull) >> shift_; }
+    std::uint64_t bucket(std::uint64_t line) const { return (line * 0x9e3779b97f4a7c15ull) >> shift_; }
 
     static void make_newest(Way* ways, Place& newest, Place at) {
         Way& way = ways[at];

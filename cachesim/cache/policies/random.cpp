@@ -4,8 +4,8 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_random(const CacheGeometry& geometry, unsigned caches, const LineIds& ids, InstructionSet) {
-    return make_in_place<RandomOrder>(geometry, caches, ids, geometry.seed);
+std::unique_ptr<Level> make_random(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/, InstructionSet) {
+    return make_in_place<RandomOrder>(geometry, caches, geometry.seed);
 }
 
 }  // namespace raycache::cachesim

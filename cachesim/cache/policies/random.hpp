@@ -41,6 +41,6 @@ private:
     std::vector<std::uint64_t> evictions_;  ///< by set, so far
 };
 
-std::unique_ptr<Level> make_random(const CacheGeometry&, unsigned caches, const LineIds&, InstructionSet);
+std::unique_ptr<Level> make_random(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
 
 }  // namespace raycache::cachesim

@@ -4,9 +4,9 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, unsigned caches, const LineIds& ids,
+std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/,
                                       InstructionSet) {
-    return make_in_place<TreePlruOrder>(geometry, caches, ids);
+    return make_in_place<TreePlruOrder>(geometry, caches);
 }
 
 }  // namespace raycache::cachesim

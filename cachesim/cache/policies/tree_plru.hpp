@@ -56,6 +56,6 @@ private:
     std::vector<bool> right_;  ///< of each inner node of each set: evict from the right half
 };
 
-std::unique_ptr<Level> make_tree_plru(const CacheGeometry&, unsigned caches, const LineIds&, InstructionSet);
+std::unique_ptr<Level> make_tree_plru(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
 
 }  // namespace raycache::cachesim

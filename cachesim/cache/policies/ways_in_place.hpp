@@ -12,36 +12,35 @@
 
 namespace raycache::cachesim {
 
-/// `Id` holds every id. A line takes the first empty way; only where none is empty is one evicted. `Order` offers
+/// A line takes the first empty way; only where none is empty is one evicted. `Order` offers
 ///     Order(sets, ways, …)
 ///     void use(set, way)                a line in this way was looked up or has just come
 ///     std::uint64_t victim(set)         the way to take next; all are full
-template <class Order, class Id>
+template <class Order>
 class WaysInPlace {
 public:
     template <class... More>
     WaysInPlace(std::uint64_t sets, std::uint64_t ways, unsigned /*sectors_per_line*/, More&&... more)
         : ways_(ways),
-          ids_(sets * ways),
+          lines_(sets * ways),
           sectors_(sets * ways),
           used_(sets),
           order_(sets, ways, std::forward<More>(more)...) {}
 
-    void prefetch(std::uint64_t set, std::uint64_t /*id*/) const {
+    void prefetch(std::uint64_t set, std::uint32_t /*line*/) const {
         __builtin_prefetch(&used_[set]);
-        __builtin_prefetch(&ids_[set * ways_]);
+        __builtin_prefetch(&lines_[set * ways_]);
     }
 
-    std::uint32_t access(std::uint64_t set, std::uint64_t long_id, std::uint32_t sectors) {
-        const Id id = static_cast<Id>(long_id);
+    std::uint32_t access(std::uint64_t set, std::uint32_t line, std::uint32_t sectors) {
         const std::uint64_t first = set * ways_, used = used_[set];
-        std::uint64_t way = find(&ids_[first], used, id);
+        std::uint64_t way = find(&lines_[first], used, line);
         std::uint32_t present = 0;
         if (way < used) {
             present = sectors_[first + way];
         } else {
             way = used < ways_ ? used_[set]++ : order_.victim(set);
-            ids_[first + way] = id;
+            lines_[first + way] = line;
         }
         sectors_[first + way] = present | sectors;
         order_.use(set, way);
@@ -49,21 +48,21 @@ public:
     }
 
 private:
-    /// The place of the id, or `count`. Compares eight at a time without a branch, so that vector instructions do it.
-    static std::uint64_t find(const Id* ids, std::uint64_t count, Id id) {
+    /// The place of the line, or `count`. Compares eight at a time without a branch, so that vector instructions do it.
+    static std::uint64_t find(const std::uint32_t* lines, std::uint64_t count, std::uint32_t line) {
         constexpr std::uint64_t run = 8;
         std::uint64_t at = 0;
         for (; at + run <= count; at += run) {
             bool any = false;
-            for (std::uint64_t i = 0; i < run; ++i) any |= ids[at + i] == id;
+            for (std::uint64_t i = 0; i < run; ++i) any |= lines[at + i] == line;
             if (any) break;
         }
-        while (at < count && ids[at] != id) ++at;
+        while (at < count && lines[at] != line) ++at;
         return at;
     }
 
     std::uint64_t ways_;
-    std::vector<Id> ids_;
+    std::vector<std::uint32_t> lines_;
     std::vector<std::uint32_t> sectors_;
     std::vector<std::uint32_t> used_;  ///< by set: ways that are not empty, the first ones
     Order order_;
@@ -71,10 +70,8 @@ private:
 
 /// A level whose sets are WaysInPlace; `more` goes to Order.
 template <class Order, class... More>
-std::unique_ptr<Level> make_in_place(const CacheGeometry& geometry, unsigned caches, const LineIds& ids, More... more) {
-    if (ids.count() <= std::uint64_t{1} << 32)
-        return std::make_unique<LevelWith<WaysInPlace<Order, std::uint32_t>>>(geometry, caches, ids, more...);
-    return std::make_unique<LevelWith<WaysInPlace<Order, std::uint64_t>>>(geometry, caches, ids, more...);
+std::unique_ptr<Level> make_in_place(const CacheGeometry& geometry, unsigned caches, More... more) {
+    return std::make_unique<LevelWith<WaysInPlace<Order>>>(geometry, caches, more...);
 }
 
 }  // namespace raycache::cachesim

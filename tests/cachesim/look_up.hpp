@@ -1,0 +1,19 @@
+// Single look-ups in a level of one set per cache or of linear sets, as tests ask for them.
+#pragma once
+
+#include <cstdint>
+
+#include "cachesim/cache/level.hpp"
+#include "cachesim/gpus/gpu.hpp"
+
+namespace raycache::cachesim::test {
+
+/// The sectors that the cache fetches for a look-up; one slice, modulo.
+inline std::uint32_t look_up(Level& level, const CacheGeometry& geometry, std::uint32_t line, std::uint32_t sectors,
+                             std::uint32_t cache = 0) {
+    const auto set = static_cast<std::uint32_t>(cache * geometry.sets + line % geometry.sets);
+    level.process(&set, &line, &sectors, 1);
+    return sectors;
+}
+
+}  // namespace raycache::cachesim::test
