@@ -54,10 +54,11 @@ LineIds::LineIds(const std::vector<traces::Region>& regions, std::uint32_t line_
 
     constexpr std::uint64_t low_bits = (std::uint64_t{1} << equal_bits) - 1;
     std::uint64_t next = 0, offset = 0;  // next: first line number above all intervals so far
-    bool first = true;
     for (const std::size_t i : order) {
-        if (first || lines[i].first >= next) offset = (lines[i].first - bound_) & ~low_bits;  // a gap: close it
-        first = false;
+        if (runs_.empty() || lines[i].first >= next) {  // a gap: close it
+            offset = (lines[i].first - bound_) & ~low_bits;
+            runs_.push_back({static_cast<std::uint32_t>(lines[i].first - offset), offset});
+        }
         offsets_[i] = offset;
         next = std::max(next, lines[i].last + 1);
         bound_ = std::max(bound_, lines[i].last - offset + 1);

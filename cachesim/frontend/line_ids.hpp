@@ -24,6 +24,13 @@ public:
     static constexpr unsigned equal_bits = 12;
     std::uint64_t offset(std::size_t region) const { return offsets_[region]; }
 
+    /// Dense ids in ascending order: from `first` on, id = line - offset.
+    struct Run {
+        std::uint32_t first;
+        std::uint64_t offset;
+    };
+    const std::vector<Run>& runs() const { return runs_; }
+
     /// Of a line (byte address / line size) of this region.
     std::uint32_t id(std::uint64_t line, std::size_t region) {
         if (dense_) [[likely]]
@@ -45,6 +52,7 @@ private:
     bool dense_ = true;
     std::uint64_t bound_ = 0, last_line_ = 0;
     std::vector<std::uint64_t> offsets_;
+    std::vector<Run> runs_;
     std::unordered_map<std::uint64_t, std::uint32_t> numbers_;  ///< not dense: of the lines touched so far
     std::vector<std::uint64_t> touched_;                        ///< those lines
 };

@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "cachesim/avx512.hpp"
+#include "cachesim/instruction_set.hpp"
 #include "traces/record.hpp"
 
 namespace raycache::cachesim {
@@ -29,6 +31,24 @@ unsigned distinct_of(const std::uint32_t* elements, unsigned count) {
     return distinct;
 }
 
+/// distinct_of() for any number of lanes, sixteen at once.
+RAYCACHE_AVX512 unsigned distinct_avx512(const std::uint32_t* elements, unsigned count) {
+    const auto first_lanes = static_cast<__mmask16>(_bzhi_u32(0xffff, count));
+    const __m512i first = _mm512_maskz_loadu_epi32(first_lanes, elements);
+    unsigned repeated = _mm512_mask_test_epi32_mask(first_lanes, _mm512_conflict_epi32(first), _mm512_set1_epi32(-1));
+    if (count <= 16) return count - static_cast<unsigned>(std::popcount(repeated));
+    const auto second_lanes = static_cast<__mmask16>(_bzhi_u32(0xffff, count - 16));
+    const __m512i second = _mm512_maskz_loadu_epi32(second_lanes, elements + 16);
+    repeated |= static_cast<unsigned>(_mm512_mask_test_epi32_mask(second_lanes, _mm512_conflict_epi32(second),
+                                                                  _mm512_set1_epi32(-1)))
+                << 16;
+    unsigned in_first = 0;
+    for (unsigned lane = 0; lane < 16; ++lane)
+        in_first |= _mm512_mask_cmpeq_epi32_mask(second_lanes, second,
+                                                 _mm512_set1_epi32(static_cast<int>(elements[lane])));
+    return count - static_cast<unsigned>(std::popcount(repeated | in_first << 16));
+}
+
 }  // namespace
 
 LoadCounter::LoadCounter(const std::vector<traces::Region>& regions, const FrontEnd& front_end, const LineShape& shape)
@@ -38,6 +58,11 @@ LoadCounter::LoadCounter(const std::vector<traces::Region>& regions, const Front
 
 LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEnd& front_end, const LineShape& shape) {
     Loads loads;
+    if (region.kind == traces::ObjectKind::sort) {
+        loads.form = Form::from_sectors;
+        loads.requests_per_element = 1;
+        return loads;
+    }
     loads.base = region.base;
     loads.stride = region.stride;
     loads.bytes = std::min(front_end.load_bytes, std::bit_ceil(region.element_size));
@@ -69,8 +94,11 @@ LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEn
 }
 
 unsigned LoadCounter::distinct(std::uint32_t mask, const std::uint32_t* elements, unsigned lanes_per_request) {
-    if (lanes_per_request == traces::warp_lanes)
-        return distinct_of(elements, static_cast<unsigned>(std::popcount(mask)));
+    if (lanes_per_request == traces::warp_lanes) {
+        static const bool avx512 = best_instruction_set() >= InstructionSet::avx512;
+        const auto lanes = static_cast<unsigned>(std::popcount(mask));
+        return avx512 ? distinct_avx512(elements, lanes) : distinct_of(elements, lanes);
+    }
     if (lanes_per_request == 2) {
         unsigned equal = 0;
         for (std::uint32_t pairs = mask & mask >> 1 & 0x55555555; pairs; pairs &= pairs - 1) {

@@ -18,29 +18,25 @@
 
 namespace raycache::cachesim {
 
-struct LoadCount {
-    unsigned loads = 0;     ///< instructions of the warp
-    unsigned requests = 0;  ///< sectors asked for by all of them
-};
-
 class LoadCounter {
 public:
     LoadCounter(const std::vector<traces::Region>&, const FrontEnd&, const LineShape&);
 
-    /// `mask`: the active lanes; `elements`: one index for each, lowest lane first; `sectors`: distinct sectors of all
-    /// of them.
-    LoadCount operator()(std::size_t region, std::uint32_t mask, const std::uint32_t* elements,
-                         unsigned sectors) const {
+    /// Load instructions that an access to this region is. What a sort moves is no loads.
+    std::uint32_t loads(std::size_t region) const { return regions_[region].count; }
+
+    /// Whether the sectors that all of its loads ask for follow from the distinct sectors of the access.
+    bool requests_follow(std::size_t region) const { return regions_[region].form == Form::from_sectors; }
+    /// Then: of any accesses to the region together.
+    std::uint64_t requests(std::size_t region, std::uint64_t sectors) const {
+        return (sectors >> regions_[region].sectors_shift) * regions_[region].requests_per_element;
+    }
+    /// Else. `mask`: the active lanes; `elements`: one index for each, lowest lane first.
+    std::uint32_t requests(std::size_t region, std::uint32_t mask, const std::uint32_t* elements) const {
         const Loads& loads = regions_[region];
-        switch (loads.form) {
-            case Form::from_sectors:
-                return {loads.count, (sectors >> loads.sectors_shift) * loads.requests_per_element};
-            case Form::from_elements:
-                return {loads.count, distinct(mask, elements, loads.lanes_per_request) * loads.requests_per_element};
-            case Form::general:
-                break;
-        }
-        return {loads.count, general(loads, mask, elements)};
+        if (loads.form == Form::from_elements)
+            return distinct(mask, elements, loads.lanes_per_request) * loads.requests_per_element;
+        return general(loads, mask, elements);
     }
 
 private:

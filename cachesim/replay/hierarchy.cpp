@@ -13,7 +13,7 @@ namespace {
 
 /// Enough that an SM finds its L1s in the machine's caches most of the time; few enough that the misses of a window
 /// stay there, too.
-constexpr std::size_t accesses_per_window = 8192;
+constexpr std::size_t accesses_per_window = 32768;
 
 LineShape shape_of(const Gpu& gpu) { return {gpu.l1().line_bytes, gpu.l1().sector_bytes}; }
 
@@ -29,11 +29,11 @@ Hierarchy::Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions,
       count_loads_(regions, gpu.front_end, shape_of(gpu)),
       shared_(gpu.levels.size() - 1),
       tally_(regions),
-      misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 512)) {
+      misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 2048)) {
     for (std::size_t level = 0; level <= shared_; ++level) {
         const unsigned caches = level == shared_ ? 1 : level == 0 ? gpu.sms * gpu.l1_per_sm : gpu.sms;
         levels_.push_back(make_level(gpu.levels[level], caches, ids_.bound(), instructions));
-        find_sets_.emplace_back(gpu.levels[level], ids_);
+        find_sets_.emplace_back(gpu.levels[level], ids_, instructions);
         fills_.emplace_back(gpu.levels[level]);
     }
     for (const traces::Region& region : regions) {
@@ -55,7 +55,7 @@ void Hierarchy::observe(RequestSink& sink) {
 void Hierarchy::pass_all(std::uint32_t group, const traces::Record& record) {
     const std::uint32_t sector = gpu_.l1().sector_bytes, lanes = record.lanes();
     const auto sectors = (lanes * element_bytes_[record.region] + sector - 1) / sector;
-    tally_.add_access(group, lanes, sectors, {0, sectors});
+    tally_.add_access(group, lanes, sectors);
     tally_.add_passing(shared_, group, sectors);
 }
 
@@ -72,14 +72,21 @@ void Hierarchy::end_sm(unsigned sm) {
 
 /// Charges the SM's accesses, whose look-ups are not answered yet.
 void Hierarchy::count_accesses() {
-    const std::uint32_t count = issued_ - batch_;
-    sectors_.assign(count, 0);
-    for (std::size_t i = 0; i < lookups_.count; ++i)
-        sectors_[lookups_.accesses[i] - batch_] += static_cast<unsigned>(std::popcount(lookups_.sectors[i]));
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const WarpAccess& access = accesses_[batch_ + i];
-        tally_.add_access(origins_[batch_ + i].group, access.lanes(), sectors_[i],
-                          count_loads_(access.region, access.mask, access.elements, sectors_[i]));
+    // Look-ups come in order of accesses: of each, how many sectors it and those before ask for.
+    sectors_.resize(accesses_.size());
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < lookups_.count; ++i) {
+        sum += static_cast<unsigned>(std::popcount(lookups_.sectors[i]));
+        sectors_[lookups_.accesses[i]] = sum;
+    }
+    std::uint32_t before = 0;
+    for (std::uint32_t i = batch_; i < issued_; ++i) {
+        const WarpAccess& access = accesses_[i];
+        const std::uint32_t group = origins_[i].group;
+        tally_.add_access(group, access.lanes(), sectors_[i] - before);
+        before = sectors_[i];
+        if (!count_loads_.requests_follow(access.region)) [[unlikely]]
+            tally_.add_requests(group, count_loads_.requests(access.region, access.mask, access.elements));
     }
 }
 

@@ -68,7 +68,7 @@ public:
     void end_kernel();
 
     /// The counts of all windows that have ended.
-    std::vector<RayGroup> groups() const { return tally_.groups(levels_.size()); }
+    std::vector<RayGroup> groups() const { return tally_.groups(levels_.size(), count_loads_); }
 
 private:
     /// Where an access of this window comes from.
@@ -104,7 +104,7 @@ private:
     std::vector<Origin> origins_;       ///< of each of them
     std::uint32_t issued_ = 0, batch_ = 0;  ///< accesses of this window, and those of SMs that have ended
     Lookups lookups_, written_;             ///< of one SM
-    std::vector<std::uint32_t> sectors_;    ///< of each of the SM's accesses: distinct sectors
+    std::vector<std::uint32_t> sectors_;    ///< of each access: count_accesses()
     std::vector<std::uint32_t> asked_;      ///< sectors asked for, while a level answers
     MissWindow misses_;
 };

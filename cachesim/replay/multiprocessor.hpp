@@ -55,6 +55,15 @@ public:
         }
     }
 
+    /// Brings near what the warps read first when they run on.
+    void prefetch() const {
+        for (const Warp& warp : active_) {
+            __builtin_prefetch(warp.next);
+            __builtin_prefetch(warp.next + 8);
+            for (unsigned lane = 0; lane < 2 * traces::warp_lanes; lane += 16) __builtin_prefetch(warp.elements + lane);
+        }
+    }
+
     /// Takes its turn in each round from `round` up to `end`, and counts `round` up. Stops after an access that frees a
     /// CTA slot, and returns that slot.
     std::optional<unsigned> run(std::size_t& round, std::size_t end, Hierarchy& memory) {
@@ -83,9 +92,10 @@ private:
     unsigned issue(std::size_t round, Hierarchy& memory) {
         if (turn_ >= active_.size()) turn_ = 0;
         Warp& warp = active_[turn_];
-        // The elements are read when the window ends; of the records, these are read a few turns on.
-        __builtin_prefetch(warp.elements);
-        __builtin_prefetch(warp.next + 8);
+        // What the warp reads a few turns on.
+        __builtin_prefetch(warp.elements + 2 * traces::warp_lanes);
+        __builtin_prefetch(warp.elements + 2 * traces::warp_lanes + 16);
+        __builtin_prefetch(warp.next + 16);
         traces::Record record = *warp.next;
         record.mask = first_vector(warp.left);
         warp.left &= ~record.mask;

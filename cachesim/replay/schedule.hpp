@@ -65,6 +65,7 @@ private:
     void run(std::size_t first, std::size_t before) {
         std::size_t limit = first == 0 ? memory_.rounds() : reached_[first - 1];
         for (std::size_t sm = first; sm < sms_.size() && limit > before; ++sm) {
+            if (sm + 1 < sms_.size()) sms_[sm + 1].prefetch();
             if (!waits_[sm]) {
                 if (const auto slot = sms_[sm].run(reached_[sm], limit, memory_)) {
                     waiting_.push({reached_[sm] - 1, sm, *slot});

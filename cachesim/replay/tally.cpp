@@ -2,7 +2,8 @@
 
 namespace raycache::cachesim {
 
-Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t levels) {
+Counters Tally::counters(const Sums& sums, std::size_t region, std::size_t levels, const LoadCounter& loads) const {
+    const traces::ObjectKind kind = kinds_[region];
     struct Fields {
         std::uint64_t Counters::*asked, Counters::*found;
     };
@@ -12,8 +13,8 @@ Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t 
     Counters c;
     c.lane_accesses = sums.lane_accesses;
     c.warp_accesses = sums.warp_accesses;
-    c.loads = sums.loads;
-    c.l1_requests = sums.requests;
+    c.loads = sums.warp_accesses * loads.loads(region);
+    c.l1_requests = loads.requests_follow(region) ? loads.requests(region, sums.sectors) : sums.requests;
     if (kind == traces::ObjectKind::node || kind == traces::ObjectKind::triangle) c.steps = sums.lane_accesses;
     std::uint64_t asked = sums.sectors;
     for (std::size_t level = 0; level < levels; ++level) {
@@ -27,7 +28,7 @@ Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t 
     return c;
 }
 
-std::vector<RayGroup> Tally::groups(std::size_t levels) const {
+std::vector<RayGroup> Tally::groups(std::size_t levels, const LoadCounter& loads) const {
     std::vector<RayGroup> result;
     for (unsigned ray = 0; ray < traces::ray_types; ++ray) {
         for (unsigned bounce = 0; bounce <= traces::max_bounce; ++bounce) {
@@ -38,7 +39,7 @@ std::vector<RayGroup> Tally::groups(std::size_t levels) const {
             group.bounce = static_cast<std::uint8_t>(bounce);
             for (std::size_t region = 0; region < kinds_.size(); ++region)
                 group.by_kind[static_cast<unsigned>(kinds_[region])] +=
-                    counters(sums_[first + region], kinds_[region], levels);
+                    counters(sums_[first + region], region, levels, loads);
             group.rays = sums_[first + kinds_.size()].rays;
             result.push_back(group);
         }

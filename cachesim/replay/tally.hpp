@@ -36,15 +36,15 @@ public:
         sums_[first_group(record) + kinds_.size()].rays += record.lanes();
     }
 
-    /// A warp access of `lanes` lanes and what the front end made of it.
-    void add_access(std::uint32_t group, unsigned lanes, unsigned sectors, LoadCount loads) {
+    /// A warp access of `lanes` lanes and distinct sectors.
+    void add_access(std::uint32_t group, unsigned lanes, unsigned sectors) {
         Sums& sums = sums_[group];
         sums.lane_accesses += lanes;
         sums.warp_accesses += 1;
-        sums.loads += loads.loads;
-        sums.requests += loads.requests;
         sums.sectors += sectors;
     }
+    /// What its loads ask for, where that does not follow from its sectors (LoadCounter).
+    void add_requests(std::uint32_t group, std::uint32_t requests) { sums_[group].requests += requests; }
 
     /// What level number `level`, from 0, fetches from below.
     void add_fetched(std::size_t level, std::uint32_t group, std::uint32_t sectors) {
@@ -62,16 +62,16 @@ public:
     }
 
     /// The groups in order of ray type and bounce. `levels`: how many there are above DRAM.
-    std::vector<RayGroup> groups(std::size_t levels) const;
+    std::vector<RayGroup> groups(std::size_t levels, const LoadCounter&) const;
 
 private:
     static constexpr std::size_t most_levels = 3;
     /// Counters, as far as they do not follow from others.
     struct Sums {
-        std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, loads = 0, requests = 0, sectors = 0;
+        std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, requests = 0, sectors = 0;
         std::array<std::uint64_t, most_levels> fetched{}, unasked{};  ///< sectors, by level
     };
-    static Counters counters(const Sums&, traces::ObjectKind, std::size_t levels);
+    Counters counters(const Sums&, std::size_t region, std::size_t levels, const LoadCounter&) const;
 
     /// Of the record's ray type and bounce: one group for each region, and one for their rays.
     std::uint32_t first_group(const traces::Record& record) {

@@ -13,13 +13,14 @@ using traces::ObjectKind;
 namespace {
 
 /// Loads and requests of lanes `mask`. `sectors`: what coalescing would say, where it matters.
-std::pair<unsigned, unsigned> count(const traces::Region& r, const FrontEnd& front_end, std::uint32_t mask,
-                                    const std::vector<std::uint32_t>& elements, unsigned sectors = 0) {
-    const LoadCount made = LoadCounter({r}, front_end, LineShape(128, 32))(0, mask, elements.data(), sectors);
-    return {made.loads, made.requests};
+std::pair<std::uint64_t, std::uint64_t> count(const traces::Region& r, const FrontEnd& front_end, std::uint32_t mask,
+                                              const std::vector<std::uint32_t>& elements, unsigned sectors = 0) {
+    const LoadCounter loads({r}, front_end, LineShape(128, 32));
+    return {loads.loads(0), loads.requests_follow(0) ? loads.requests(0, sectors)
+                                                     : loads.requests(0, mask, elements.data())};
 }
 
-using Count = std::pair<unsigned, unsigned>;
+using Count = std::pair<std::uint64_t, std::uint64_t>;
 
 const traces::Region nodes = region(ObjectKind::node, 0x200000, 64, 64, 1000);
 const traces::Region triangles = region(ObjectKind::triangle, 0x200000, 48, 48, 1000);

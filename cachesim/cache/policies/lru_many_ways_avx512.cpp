@@ -78,8 +78,8 @@ private:
     RAYCACHE_AVX512 std::size_t process_one(std::uint32_t number, const std::uint32_t* sets, const std::uint32_t* lines,
                                             std::uint32_t* sectors, std::size_t i, std::size_t end) {
         const std::uint32_t first = number * sets_per_cache_, sets_per_cache = sets_per_cache_;
-        const Bucket* const tags = &tags_[std::size_t{number} * buckets_];
-        std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+        const Bucket* const tags = tags_of(number);
+        std::uint32_t* const states = states_of(number);
         const int shift = bucket_shift_;
         std::uint32_t now = caches_[number].now;
         for (; i < end && sets[i] - first < sets_per_cache; ++i, ++now) {
@@ -101,13 +101,16 @@ private:
     }
 
     /// Brings tags and states near, if there are so many look-ups that most will be asked for.
-    void fetch(std::uint32_t number, std::size_t lookups) const {
+    void fetch(std::uint32_t number, std::size_t lookups) {
         if (lookups < buckets_) return;
         for (std::uint32_t b = 0; b < buckets_; ++b) {
-            __builtin_prefetch(&tags_[std::size_t{number} * buckets_ + b]);
-            __builtin_prefetch(&states_[std::size_t{number} * buckets_ + b], 1);
+            __builtin_prefetch(tags_of(number) + b);
+            __builtin_prefetch(states_of(number) + std::size_t{b} * lanes, 1);
         }
     }
+
+    Bucket* tags_of(std::uint32_t number) { return &tags_[std::size_t{number} * buckets_]; }
+    std::uint32_t* states_of(std::uint32_t number) { return states_[std::size_t{number} * buckets_].words; }
 
     static Bucket filled(std::uint32_t word) {
         Bucket bucket;
@@ -127,10 +130,10 @@ private:
     }
 
     /// The line is not in the bucket where it belongs: it has strayed to another one, or is absent.
-    RAYCACHE_AVX512 [[gnu::noinline]] std::uint32_t look_further(std::uint32_t number, std::uint32_t set_number,
-                                                                 std::uint32_t line, std::uint32_t wanted) {
-        Bucket* const tags = &tags_[std::size_t{number} * buckets_];
-        std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+    RAYCACHE_AVX512 std::uint32_t look_further(std::uint32_t number, std::uint32_t set_number, std::uint32_t line,
+                                               std::uint32_t wanted) {
+        Bucket* const tags = tags_of(number);
+        std::uint32_t* const states = states_of(number);
         std::uint32_t* const strayed = &strayed_[std::size_t{number} * buckets_];
         const std::uint32_t stamp = caches_[number].now << time_shift;
         const std::uint32_t belongs = home(line);
@@ -139,9 +142,8 @@ private:
                 const std::uint32_t found = equal(tags[b], line);
                 if (!found) continue;
                 std::uint32_t& state = states[b * lanes + static_cast<std::uint32_t>(std::countr_zero(found))];
-                const std::uint32_t present = state & sectors_mask;
-                const std::uint32_t fetched = widened(wanted & ~present, present);
-                state = stamp | present | wanted | fetched;
+                const std::uint32_t present = state & sectors_mask, fetched = widened(wanted & ~present, present);
+                state = stamp | present | fetched;
                 return fetched;
             }
         }
@@ -168,14 +170,14 @@ private:
     RAYCACHE_AVX512 void evict(std::uint32_t number, std::uint32_t set_number) {
         Set& set = sets_[set_number];
         const std::uint32_t* const queue = &queues_[std::size_t{set_number} * ways_];
-        std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+        std::uint32_t* const states = states_of(number);
         std::uint32_t slot = 0;
         do {
             while (set.begin == set.end) [[unlikely]]
                     move_horizon(number);
             slot = queue[set.begin++];
         } while (!is_queued(states[slot]));  // it was used after all
-        std::uint32_t& tag = tags_[std::size_t{number} * buckets_ + slot / lanes].words[slot % lanes];
+        std::uint32_t& tag = tags_of(number)[slot / lanes].words[slot % lanes];
         if (const std::uint32_t belongs = home(tag); belongs != slot / lanes) [[unlikely]]
             --strayed_[std::size_t{number} * buckets_ + belongs];
         tag = no_line;
@@ -187,7 +189,7 @@ private:
     /// later one. No two were used at the same time, so the time is where to put them for sorting.
     RAYCACHE_AVX512 [[gnu::noinline]] void move_horizon(std::uint32_t number) {
         Cache& cache = caches_[number];
-        std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+        std::uint32_t* const states = states_of(number);
         const std::uint32_t span = std::min(cache.span, cache.now - cache.horizon);
         const __m512i from = all(cache.horizon), width = all(span);
         const __m512i places = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -225,7 +227,7 @@ private:
 
     /// Drops from the queues the lines that were used since, so that none is in its queue twice.
     void forget_used(std::uint32_t number) {
-        const std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+        const std::uint32_t* const states = states_of(number);
         const std::uint32_t first = number * sets_per_cache_;
         for (std::uint32_t s = first; s < first + sets_per_cache_; ++s) {
             Set& set = sets_[s];
@@ -242,7 +244,7 @@ private:
 
     /// Numbers the times at which lines were last used from 0, in their order.
     void start_time_anew(std::uint32_t number) {
-        std::uint32_t* const states = states_[std::size_t{number} * buckets_].words;
+        std::uint32_t* const states = states_of(number);
         std::vector<std::uint32_t> used;
         for (std::uint32_t slot = 0; slot < slots_; ++slot)
             if (states[slot] != never) used.push_back(slot);
