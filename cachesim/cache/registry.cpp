@@ -18,24 +18,34 @@ namespace {
 struct Entry {
     std::string_view name;
     std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+    std::unique_ptr<VictimOrder> (*order)(const CacheGeometry&, unsigned cache);
 };
 
-/// Sorted by name.
+/// Sorted by name. A timed replay keeps the order of lru itself.
 constexpr Entry policies[] = {
-    {"fifo", make_fifo},
-    {"lru", make_lru},
-    {"random", make_random},
-    {"tree_plru", make_tree_plru},
+    {"fifo", make_fifo, order_fifo},
+    {"lru", make_lru, nullptr},
+    {"random", make_random, order_random},
+    {"tree_plru", make_tree_plru, order_tree_plru},
 };
+
+const Entry& entry_of(const CacheGeometry& geometry) {
+    for (const Entry& policy : policies)
+        if (policy.name == geometry.policy) return policy;
+    throw Error(fmt::format("cache: expected a replacement policy out of {}, found \"{}\"",
+                            fmt::join(cache_policies(), ", "), geometry.policy));
+}
 
 }  // namespace
 
 std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, std::uint64_t lines,
                                   InstructionSet instructions) {
-    for (const Entry& policy : policies)
-        if (policy.name == geometry.policy) return policy.make(geometry, caches, lines, instructions);
-    throw Error(fmt::format("cache: expected a replacement policy out of {}, found \"{}\"",
-                            fmt::join(cache_policies(), ", "), geometry.policy));
+    return entry_of(geometry).make(geometry, caches, lines, instructions);
+}
+
+std::unique_ptr<VictimOrder> make_victim_order(const CacheGeometry& geometry, unsigned cache) {
+    const Entry& policy = entry_of(geometry);
+    return policy.order ? policy.order(geometry, cache) : nullptr;
 }
 
 std::vector<std::string> cache_policies() {

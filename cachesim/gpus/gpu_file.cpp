@@ -34,14 +34,18 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "l1_latency",
                                        "l2_latency",
                                        "l2_far_latency",
+                                       "l3_latency",
                                        "dram_latency",
                                        "l2_partitions",
                                        "l1_mshrs",
                                        "l1_mshr_merges",
                                        "l2_mshrs",
                                        "l2_mshr_merges",
+                                       "l3_mshrs",
+                                       "l3_mshr_merges",
                                        "crossbar_bytes_per_cycle",
                                        "l2_bytes_per_cycle",
+                                       "l3_bytes_per_cycle",
                                        "dram_channels",
                                        "dram_gb_s"};
 
@@ -106,14 +110,18 @@ Timing read_timing(TomlReader::Section section) {
     t.l1_latency = section.number<std::uint32_t>("l1_latency", true);
     t.l2_latency = section.number<std::uint32_t>("l2_latency", true);
     t.l2_far_latency = section.number_or("l2_far_latency", t.l2_latency, true);
+    t.l3_latency = section.number_or("l3_latency", t.l3_latency, true);
     t.dram_latency = section.number<std::uint32_t>("dram_latency", true);
     t.l2_partitions = section.number_or("l2_partitions", t.l2_partitions);
     t.l1_mshrs = section.number<std::uint32_t>("l1_mshrs");
     t.l1_mshr_merges = section.number<std::uint32_t>("l1_mshr_merges");
     t.l2_mshrs = section.number<std::uint32_t>("l2_mshrs");
     t.l2_mshr_merges = section.number<std::uint32_t>("l2_mshr_merges");
+    t.l3_mshrs = section.number_or("l3_mshrs", t.l3_mshrs);
+    t.l3_mshr_merges = section.number_or("l3_mshr_merges", t.l3_mshr_merges);
     t.crossbar_bytes_per_cycle = section.positive("crossbar_bytes_per_cycle");
     t.l2_bytes_per_cycle = section.positive("l2_bytes_per_cycle");
+    t.l3_bytes_per_cycle = section.positive_or("l3_bytes_per_cycle", t.l3_bytes_per_cycle);
     t.dram_channels = section.number<std::uint32_t>("dram_channels");
     t.dram_gb_s = section.positive("dram_gb_s");
     return t;

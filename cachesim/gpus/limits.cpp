@@ -120,10 +120,6 @@ std::optional<GpuProblem> find_problem(const FrontEnd& front_end) {
 }
 
 std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
-    if (gpu.levels.size() != 2)
-        return GpuProblem{"timing.clock_mhz",
-                          "expected two levels of caches for a timed replay, found three; remove "
-                          "[timing]"};
     if (auto p = not_in("timing.schedulers", t.schedulers, 1, 64)) return p;
     if (auto p = not_in("timing.dependent_chains", t.dependent_chains, 1, 64)) return p;
     if (auto p = not_a_power_of_two("timing.l1_banks", t.l1_banks)) return p;
@@ -132,17 +128,26 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
     for (const auto& [key, cycles] :
          {std::pair{"timing.launch_cycles", t.launch_cycles}, std::pair{"timing.l1_latency", t.l1_latency},
           std::pair{"timing.l2_latency", t.l2_latency}, std::pair{"timing.l2_far_latency", t.l2_far_latency},
-          std::pair{"timing.dram_latency", t.dram_latency},
+          std::pair{"timing.l3_latency", t.l3_latency}, std::pair{"timing.dram_latency", t.dram_latency},
           std::pair{"timing.instruction_latency", t.instruction_latency},
           std::pair{"timing.node_instructions", t.node_instructions},
           std::pair{"timing.triangle_instructions", t.triangle_instructions},
           std::pair{"timing.texel_instructions", t.texel_instructions}})
         if (auto p = not_in(key, cycles, 0, 1'000'000)) return p;
-    if (t.l2_latency < t.l1_latency || t.l2_far_latency < t.l2_latency || t.dram_latency < t.l2_latency)
+    const bool three = gpu.levels.size() == 3;
+    if (three && (t.l3_mshrs == 0 || t.l3_mshr_merges == 0))
+        return GpuProblem{"timing.l3_mshrs", "expected registers for the misses of L3, found none; give l3_latency, "
+                                             "l3_mshrs, l3_mshr_merges and l3_bytes_per_cycle"};
+    const std::uint32_t last = three ? t.l3_latency : t.l2_latency;
+    if (t.l2_latency < t.l1_latency || last < t.l2_latency || t.l2_far_latency < t.l2_latency || t.dram_latency < last)
         return GpuProblem{"timing.l2_latency",
-                          fmt::format("expected l1_latency <= l2_latency <= l2_far_latency and l2_latency <= "
-                                      "dram_latency, found {}, {}, {} and {}; each contains those above it",
-                                      t.l1_latency, t.l2_latency, t.l2_far_latency, t.dram_latency)};
+                          fmt::format("expected l1_latency <= l2_latency <= l2_far_latency, l2_latency <= l3_latency "
+                                      "where there is one, and none above dram_latency, found {}, {}, {}, {} and {}; "
+                                      "each contains those above it",
+                                      t.l1_latency, t.l2_latency, t.l2_far_latency, t.l3_latency, t.dram_latency)};
+    if (three && t.l2_partitions != 1)
+        return GpuProblem{"timing.l2_partitions",
+                          fmt::format("expected 1 where there is an L3, found {}", t.l2_partitions)};
     if (auto p = not_in("timing.l2_partitions", t.l2_partitions, 1, gpu.levels.back().slices)) return p;
     return not_in("timing.dram_channels", t.dram_channels, 1, 4096);
 }

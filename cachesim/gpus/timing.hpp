@@ -4,6 +4,7 @@
 // load sees from issue to issue (pointer chase), so each contains those of the levels above it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace raycache::cachesim {
@@ -16,6 +17,13 @@ enum class L1Port {
     /// descending
     /// order of address and wait for the next cycle at the first bank that is taken (GPGPU-Sim).
     banks,
+};
+
+/// One level of caches.
+struct LevelTiming {
+    std::uint32_t latency = 0;                ///< cycles, those of the levels above included
+    std::uint32_t mshrs = 0, mshr_merges = 0;  ///< sectors under way, and look-ups that may wait for each; of a slice
+    double bytes_per_cycle = 0;               ///< of each slice
 };
 
 struct Timing {
@@ -47,8 +55,16 @@ struct Timing {
     std::uint32_t l2_mshrs = 0, l2_mshr_merges = 0;  ///< of each slice
     double crossbar_bytes_per_cycle = 32;            ///< of each SM, each way
     double l2_bytes_per_cycle = 32;                  ///< of each slice
+    std::uint32_t l3_latency = 0, l3_mshrs = 0, l3_mshr_merges = 0;  ///< where there is an L3: then L2 belongs to an SM
+    double l3_bytes_per_cycle = 32;
     std::uint32_t dram_channels = 1;
     double dram_gb_s = 0;  ///< of all channels together, 10^9 bytes per second
+
+    /// L2 or L3: Gpu::levels[number].
+    LevelTiming level(std::size_t number) const {
+        return number == 1 ? LevelTiming{l2_latency, l2_mshrs, l2_mshr_merges, l2_bytes_per_cycle}
+                           : LevelTiming{l3_latency, l3_mshrs, l3_mshr_merges, l3_bytes_per_cycle};
+    }
 };
 
 }  // namespace raycache::cachesim

@@ -69,16 +69,6 @@ const Gpu& checked_timed(const Gpu& gpu) {
             fmt::format("GPU \"{}\": expected a table [timing] for a timed replay, found none; add one, or replay "
                         "without time",
                         gpu.name));
-    for (std::size_t level = 0; level < gpu.levels.size(); ++level) {
-        if (gpu.levels[level].ways >= 1u << 16)
-            throw Error(fmt::format("GPU \"{}\": l{}.ways: expected fewer than 65536 for a timed replay, found {}",
-                                    gpu.name, level + 1, gpu.levels[level].ways));
-        if (const std::string& policy = gpu.levels[level].policy; policy != "lru" && policy != "fifo")
-            throw Error(
-                fmt::format("GPU \"{}\": l{}.policy: expected \"lru\" or \"fifo\" for a timed replay, found "
-                            "\"{}\"",
-                            gpu.name, level + 1, policy));
-    }
     if (std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight > 64 * gpu.timing->schedulers)
         throw Error(
             fmt::format("GPU \"{}\": warps_per_sm: expected at most 64 for each of {} schedulers in a timed "

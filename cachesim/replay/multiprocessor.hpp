@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cachesim/replay/hierarchy.hpp"
+#include "cachesim/replay/vectors.hpp"
 #include "traces/record.hpp"
 
 namespace raycache::cachesim {
@@ -97,7 +98,7 @@ private:
         __builtin_prefetch(warp.elements + 2 * traces::warp_lanes + 16);
         __builtin_prefetch(warp.next + 16);
         traces::Record record = *warp.next;
-        record.mask = first_vector(warp.left);
+        record.mask = first_vector(warp.left, simd_width_);
         warp.left &= ~record.mask;
         if (!warp.left) ++warp.next;
         memory.access(record, warp.elements, warp.number, warp.l1, round);
@@ -111,12 +112,6 @@ private:
         ended_.push_back(std::move(traces_[warp.slot]));
         active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(turn_));
         return --unfinished_[cta_slot] > 0 ? none : cta_slot;
-    }
-
-    /// The lanes, not none, that execute with the lowest of them.
-    std::uint32_t first_vector(std::uint32_t lanes) const {
-        const std::uint32_t vector = ~std::uint32_t{0} >> (traces::warp_lanes - simd_width_);
-        return lanes & vector << (static_cast<unsigned>(std::countr_zero(lanes)) & ~(simd_width_ - 1));
     }
 
     /// Counts ray starts up to the next access; false if there is none.

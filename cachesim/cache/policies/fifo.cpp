@@ -8,4 +8,8 @@ std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, unsigned caches,
     return make_in_place<FifoOrder>(geometry, caches);
 }
 
+std::unique_ptr<VictimOrder> order_fifo(const CacheGeometry& geometry, unsigned /*cache*/) {
+    return std::make_unique<VictimOrderOf<FifoOrder>>(geometry.slices * geometry.sets, geometry.ways);
+}
+
 }  // namespace raycache::cachesim

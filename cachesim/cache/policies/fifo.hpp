@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cachesim/cache/level.hpp"
+#include "cachesim/cache/policies/victim_order.hpp"
 #include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {
@@ -30,5 +31,6 @@ private:
 };
 
 std::unique_ptr<Level> make_fifo(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<VictimOrder> order_fifo(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

@@ -8,4 +8,8 @@ std::unique_ptr<Level> make_random(const CacheGeometry& geometry, unsigned cache
     return make_in_place<RandomOrder>(geometry, caches, geometry.seed);
 }
 
+std::unique_ptr<VictimOrder> order_random(const CacheGeometry& geometry, unsigned cache) {
+    return std::make_unique<VictimOrderOf<RandomOrder>>(geometry.slices * geometry.sets, geometry.ways, geometry.seed + cache);
+}
+
 }  // namespace raycache::cachesim

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cachesim/cache/level.hpp"
+#include "cachesim/cache/policies/victim_order.hpp"
 #include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {
@@ -42,5 +43,6 @@ private:
 };
 
 std::unique_ptr<Level> make_random(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<VictimOrder> order_random(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

@@ -9,4 +9,8 @@ std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, unsigned ca
     return make_in_place<TreePlruOrder>(geometry, caches);
 }
 
+std::unique_ptr<VictimOrder> order_tree_plru(const CacheGeometry& geometry, unsigned /*cache*/) {
+    return std::make_unique<VictimOrderOf<TreePlruOrder>>(geometry.slices * geometry.sets, geometry.ways);
+}
+
 }  // namespace raycache::cachesim

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cachesim/cache/level.hpp"
+#include "cachesim/cache/policies/victim_order.hpp"
 #include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {
@@ -57,5 +58,6 @@ private:
 };
 
 std::unique_ptr<Level> make_tree_plru(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<VictimOrder> order_tree_plru(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

@@ -6,14 +6,14 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <queue>
-#include <utility>
 #include <vector>
 
-#include "cachesim/replay/timed/sector_tags.hpp"
+#include "cachesim/replay/timed/cycle.hpp"
+#include "cachesim/replay/timed/ring.hpp"
 
 namespace raycache::cachesim {
 
@@ -21,13 +21,21 @@ namespace raycache::cachesim {
 template <class Packet>
 class Crossbar {
 public:
-    /// `cost`: cycles that a packet takes an output. 0: as many packets at once as there are.
-    Crossbar(std::size_t inputs, std::size_t outputs, double cost)
-        : queues_(inputs), input_free_(inputs), output_free_(outputs), cost_(cost) {}
+    /// `cost`: cycles that a packet takes an output. 0: as many packets at once as there are. `window`: the most cycles
+    /// of one run().
+    Crossbar(std::size_t inputs, std::size_t outputs, double cost, std::size_t window)
+        : queues_(inputs),
+          input_free_(inputs),
+          output_free_(outputs),
+          cost_(cost),
+          head_time_(inputs),
+          next_head_(inputs, none),
+          first_head_(window, none),
+          some_(window / 64 + 1) {}
 
     /// Packets of one input leave in order of readiness, ties in order of coming.
-    void add(std::size_t input, Packet packet) {
-        queues_[input].push({packet, order_++});
+    void add(std::size_t input, const Packet& packet) {
+        queues_[input].insert(packet, [](const Packet& a, const Packet& b) { return a.ready < b.ready; });
         ++packets_;
     }
 
@@ -39,55 +47,73 @@ public:
     }
 
     /// Moves every packet that comes to the head of its queue before `end`, in order of time, and calls
-    /// arrived(packet, cycle) for each. Packets added later must not be ready before `end`.
+    /// arrived(packet, cycle) for each. Packets added later must not be ready before `end`, and a run begins where the
+    /// one before ended.
     template <class Arrived>
-    void run(Cycle end, Arrived&& arrived) {
+    void run(Cycle begin, Cycle end, Arrived&& arrived) {
+        if (packets_ == 0) return;
+        begin_ = static_cast<double>(begin);
         const auto limit = static_cast<double>(end);
         for (std::size_t input = 0; input < queues_.size(); ++input)
-            if (!queues_[input].empty()) add_head(input, limit);
-        while (!heads_.empty()) {
-            const auto [time, input] = heads_.top();
-            heads_.pop();
-            auto& queue = queues_[input];
-            const std::uint32_t output = queue.top().packet.output;
-            double granted = std::max(time, output_free_[output]);
-            for (;;) {
-                const Packet packet = queue.top().packet;
-                queue.pop();
-                --packets_;
-                output_free_[output] = granted + cost_;
-                input_free_[input] = granted;
-                arrived(packet, static_cast<Cycle>(std::ceil(granted)));
-                if (queue.empty() || queue.top().packet.output != output) break;
-                if (static_cast<double>(queue.top().packet.ready) > output_free_[output] ||
-                    output_free_[output] >= limit)
-                    break;
-                granted = output_free_[output];
+            if (!queues_[input].empty()) add_head(static_cast<std::uint32_t>(input), limit);
+        for (std::size_t word = 0; word < some_.size(); ++word) {
+            while (some_[word]) {
+                const std::size_t at = word * 64 + static_cast<std::size_t>(std::countr_zero(some_[word]));
+                const std::uint32_t input = first_head_[at];
+                first_head_[at] = next_head_[input];
+                if (first_head_[at] == none) some_[word] &= some_[word] - 1;
+                serve(input, limit, arrived);
             }
-            if (!queue.empty()) add_head(input, limit);
         }
     }
 
 private:
-    struct Queued {
-        Packet packet;
-        std::uint64_t order;
-        bool operator>(const Queued& other) const {
-            return packet.ready != other.packet.ready ? packet.ready > other.packet.ready : order > other.order;
-        }
-    };
-    using Head = std::pair<double, std::size_t>;  ///< since when, input
+    static constexpr std::uint32_t none = ~std::uint32_t{0};
 
-    void add_head(std::size_t input, double limit) {
-        const double time = std::max(static_cast<double>(queues_[input].top().packet.ready), input_free_[input]);
-        if (time < limit) heads_.push({time, input});
+    /// The head of an input's queue is the next.
+    template <class Arrived>
+    void serve(std::uint32_t input, double limit, Arrived& arrived) {
+        Ring<Packet>& queue = queues_[input];
+        const std::uint32_t output = queue.front().output;
+        double granted = std::max(head_time_[input], output_free_[output]);
+        for (;;) {
+            const Packet packet = queue.front();
+            queue.pop();
+            --packets_;
+            output_free_[output] = granted + cost_;
+            input_free_[input] = granted;
+            arrived(packet, static_cast<Cycle>(std::ceil(granted)));
+            if (queue.empty() || queue.front().output != output) break;
+            if (static_cast<double>(queue.front().ready) > output_free_[output] || output_free_[output] >= limit) break;
+            granted = output_free_[output];
+        }
+        if (!queue.empty()) add_head(input, limit);
     }
 
-    std::vector<std::priority_queue<Queued, std::vector<Queued>, std::greater<>>> queues_;
+    /// Notes since when the input's next packet is the head of its queue, if that is before the limit: in a list for
+    /// each cycle, in order of time, then of input.
+    void add_head(std::uint32_t input, double limit) {
+        const double time = std::max(static_cast<double>(queues_[input].front().ready), input_free_[input]);
+        if (time >= limit) return;
+        head_time_[input] = time;
+        const auto at = static_cast<std::size_t>(std::max(0.0, time - begin_));
+        some_[at / 64] |= std::uint64_t{1} << at % 64;
+        std::uint32_t* link = &first_head_[at];
+        while (*link != none && (head_time_[*link] < time || (head_time_[*link] == time && *link < input)))
+            link = &next_head_[*link];
+        next_head_[input] = *link;
+        *link = input;
+    }
+
+    std::vector<Ring<Packet>> queues_;
     std::vector<double> input_free_, output_free_;
     double cost_;
-    std::uint64_t order_ = 0, packets_ = 0;
-    std::priority_queue<Head, std::vector<Head>, std::greater<>> heads_;
+    std::uint64_t packets_ = 0;
+    double begin_ = 0;                       ///< of the run
+    std::vector<double> head_time_;          ///< by input
+    std::vector<std::uint32_t> next_head_;   ///< by input: the next in its list
+    std::vector<std::uint32_t> first_head_;  ///< by cycle of the run: input
+    std::vector<std::uint64_t> some_;        ///< by cycle: bit, whether there is one
 };
 
 }  // namespace raycache::cachesim

@@ -14,128 +14,117 @@ double cycles_per_sector(double bytes_per_cycle, std::uint32_t sector_bytes, boo
 
 }  // namespace
 
-MemorySide::MemorySide(const Gpu& gpu, const Idealised& ideal)
-    : geometry_(gpu.levels.back()),
-      timing_(*gpu.timing),
-      perfect_(ideal.perfect_l2),
-      map_(geometry_),
-      tags_(geometry_.slices * geometry_.sets, geometry_.ways, geometry_.line_bytes / geometry_.sector_bytes,
-            geometry_.policy == "fifo"),
-      sectors_per_line_(geometry_.line_bytes / geometry_.sector_bytes),
-      sectors_per_fill_(std::max(geometry_.fill_bytes, geometry_.sector_bytes) / geometry_.sector_bytes),
-      sms_(gpu.sms),
-      slices_per_channel_(std::max(1u, geometry_.slices / timing_.dram_channels)),
-      shortest_(ideal.no_added_latency ? 0 : timing_.l2_latency - timing_.l1_latency),
-      dram_extra_(ideal.no_added_latency ? 0 : timing_.dram_latency - timing_.l2_latency),
-      far_extra_(ideal.no_added_latency ? 0 : timing_.l2_far_latency - timing_.l2_latency),
-      crossbar_cost_(
-          cycles_per_sector(timing_.crossbar_bytes_per_cycle, geometry_.sector_bytes, ideal.infinite_bandwidth)),
-      slice_cost_(cycles_per_sector(timing_.l2_bytes_per_cycle, geometry_.sector_bytes, ideal.infinite_bandwidth)),
-      dram_cost_(cycles_per_sector(timing_.dram_gb_s * 1e9 / (timing_.clock_mhz * 1e6) / timing_.dram_channels,
-                                   geometry_.sector_bytes, ideal.infinite_bandwidth)),
-      channel_(timing_.dram_channels),
-      under_way_(geometry_.slices),
-      to_slices_(gpu.sms, geometry_.slices, slice_cost_),
-      to_sms_(geometry_.slices, gpu.sms, crossbar_cost_),
-      sent_(gpu.sms) {
-    std::size_t entries = geometry_.slices * geometry_.sets * geometry_.ways;
-    if (auto buffer = make_fill_buffer(geometry_, timing_.l2_mshrs)) {
-        entries += std::size_t{geometry_.slices} * buffer->lines();
-        fills_.assign(geometry_.slices, *buffer);
-    }
-    merges_.resize(entries * sectors_per_line_);
+MemorySide::MemorySide(const TimedRules& rules)
+    : rules_(rules),
+      timing_(rules.timing.level(rules.gpu.levels.size() - 1)),
+      slice_count_(rules.gpu.levels.back().slices),
+      sets_(static_cast<std::uint32_t>(rules.gpu.levels.back().sets)),
+      sectors_per_fill_(std::max(rules.gpu.levels.back().fill_bytes, rules.gpu.l1().sector_bytes) /
+                        rules.gpu.l1().sector_bytes),
+      slices_per_channel_(std::max(1u, slice_count_ / rules.timing.dram_channels)),
+      level_extra_(rules.ideal.no_added_latency ? 0 : timing_.latency - rules.timing.l1_latency),
+      dram_extra_(rules.ideal.no_added_latency ? 0 : rules.timing.dram_latency - timing_.latency),
+      far_extra_(rules.ideal.no_added_latency || rules.three_levels() ? 0
+                                                                      : rules.timing.l2_far_latency - timing_.latency),
+      window_(std::max<Cycle>(1, level_extra_)),
+      crossbar_cost_(cycles_per_sector(rules.timing.crossbar_bytes_per_cycle, rules.gpu.l1().sector_bytes,
+                                       rules.ideal.infinite_bandwidth)),
+      slice_cost_(
+          cycles_per_sector(timing_.bytes_per_cycle, rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
+      dram_cost_(cycles_per_sector(
+          rules.timing.dram_gb_s * 1e9 / (rules.timing.clock_mhz * 1e6) / rules.timing.dram_channels,
+          rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
+      channel_(rules.timing.dram_channels),
+      to_slices_(rules.gpu.sms, slice_count_, slice_cost_, window_),
+      to_sms_(slice_count_, rules.gpu.sms, crossbar_cost_, window_),
+      sent_(rules.gpu.sms) {
+    CacheGeometry slice = rules.gpu.levels.back();
+    slice.slices = 1;
+    for (std::uint32_t i = 0; i < slice_count_; ++i) slices_.emplace_back(slice, i, timing_.mshrs);
 }
 
 void MemorySide::request(const MissRequest& miss) {
     double& free = sent_[miss.sm];
     const double sent = std::max(static_cast<double>(miss.time), free);
     free = sent + crossbar_cost_;
-    to_slices_.add(miss.sm, {static_cast<Cycle>(std::ceil(sent)), map_.place(miss.line).slice, miss});
+    const LineMap::Place place = rules_.maps.back().place(miss.line);
+    to_slices_.add(miss.sm, {static_cast<Cycle>(std::ceil(sent)), place.slice, static_cast<std::uint32_t>(place.set),
+                             miss.id, miss.number, miss.sm, miss.sector, miss.l1});
 }
 
-void MemorySide::run_requests(Cycle end) {
-    to_slices_.run(end, [this](const Packet& packet, Cycle time) { serve(packet, time); });
+void MemorySide::run_requests(Cycle begin, Cycle end) {
+    to_slices_.run(begin, end, [this](const Packet& packet, Cycle time) { serve(packet, time); });
 }
 
 void MemorySide::serve(const Packet& packet, Cycle time) {
-    const MissRequest& miss = packet.miss;
-    const Cycle arrival = look_up(miss.line, miss.sector, packet.output, time);
-    const bool far = std::uint64_t{packet.output} * timing_.l2_partitions / geometry_.slices !=
-                     std::uint64_t{miss.sm} * timing_.l2_partitions / sms_;
-    const Cycle ready = std::max(arrival, time) + shortest_ + (far ? far_extra_ : 0);
-    to_sms_.add(packet.output, {ready, miss.sm, miss.entry, miss.sector, miss.l1});
+    const Cycle arrival = look_up(packet, time);
+    Cycle ready = std::max(arrival, time) + level_extra_;
+    if (far_extra_ != 0) {
+        const std::uint64_t partitions = rules_.timing.l2_partitions;
+        if (packet.output * partitions / slice_count_ != packet.sm * partitions / rules_.gpu.sms) ready += far_extra_;
+    }
+    to_sms_.add(packet.output, {ready, packet.sm, packet.number, packet.l1});
 }
 
-Cycle MemorySide::look_up(std::uint64_t line, std::uint32_t sector, std::uint32_t slice, Cycle time) {
-    if (perfect_) {
+/// When the sector is in its slice.
+Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
+    if (rules_.ideal.perfect_l2) {
         ++answers_.hits;
         return time;
     }
-    FillBuffer* const fills = fills_.empty() ? nullptr : &fills_[slice];
-    if (fills) fills->drain(time, tags_, map_);
-    std::uint32_t entry = tags_.find(line);
-    const auto merge = [&](std::uint32_t number, Cycle arrival) {
+    TimedCache& slice = slices_[packet.output];
+    SectorCache& lines = slice.lines();
+    MissRegisters& registers = slice.registers();
+    slice.drain(time);
+    std::uint32_t entry = lines.find(packet.id);
+    if (entry != TimedCache::none && (lines[entry].present >> packet.sector & 1)) {
+        lines.use(entry);
+        ++answers_.hits;
+        return time;
+    }
+    if (const std::uint32_t pending = slice.find_pending(packet.id, packet.sector, entry);
+        pending != TimedCache::none) {
+        MissRegisters::Register& r = registers[pending];
+        if (entry != TimedCache::none) lines.use(entry);
         ++answers_.merges;
         // A register that merges no more holds up the slice until the data are there.
-        if (++merges_[number * sectors_per_line_ + sector] >= timing_.l2_mshr_merges)
-            to_slices_.block_output(slice, arrival);
-        return arrival;
-    };
-    if (entry != SectorTags::none && tags_.present(entry, sector)) {
-        tags_.use(entry);
-        const Cycle arrival = tags_.arrival(entry, sector);
-        if (arrival > time) return merge(entry, arrival);
-        ++answers_.hits;
-        return time;
+        if (++r.merged >= timing_.mshr_merges) to_slices_.block_output(packet.output, r.arrival);
+        return r.arrival;
     }
-    if (fills) {
-        const std::uint32_t filling = fills->find(line, sector);
-        if (filling != SectorTags::none) return merge(first_fill(slice) + filling, fills->arrival(filling, sector));
-    }
-    auto& under_way = under_way_[slice];
-    while (!under_way.empty() && under_way.top() <= time) under_way.pop();
     const auto wait = [&] {  // until a register is free
-        time = under_way.empty() ? time + 1 : std::max(time + 1, under_way.top());
-        if (!under_way.empty()) under_way.pop();
-        if (!fills) return;
-        fills->drain(time, tags_, map_);
-        entry = tags_.find(line);
+        time = std::max(time + 1, slice.next_arrival() == never ? 0 : slice.next_arrival());
+        slice.drain(time);
+        entry = lines.find(packet.id);
     };
-    if (under_way.size() >= timing_.l2_mshrs) {
+    if (registers.full()) {
         wait();
-        to_slices_.block_output(slice, time);
+        to_slices_.block_output(packet.output, time);
     }
-    if (entry != SectorTags::none) {
+    if (entry != TimedCache::none) {
         ++answers_.sector_misses;
-        tags_.use(entry);
+        lines.use(entry);
     } else {
         ++answers_.line_misses;
-        const std::uint64_t set = map_(line);
-        while (!fills && (entry = tags_.replace(set, line, time)) == SectorTags::none) wait();  // no line has arrived
     }
-    const std::uint32_t first = sector / sectors_per_fill_ * sectors_per_fill_;
+    const std::uint32_t first = packet.sector / sectors_per_fill_ * sectors_per_fill_;
     Cycle arrival = 0;
     for (std::uint32_t s = first; s < first + sectors_per_fill_; ++s) {
-        if (entry != SectorTags::none && tags_.present(entry, s)) continue;
-        if (fills && fills->find(line, s) != SectorTags::none) continue;
-        const Cycle here = read_dram(slice, time);
-        std::uint32_t holder = entry;
-        if (fills) {
-            while ((holder = fills->add(line, s, here, time)) == SectorTags::none) wait();
-            holder += first_fill(slice);
-        } else {
-            tags_.add(entry, s, here);
-        }
-        merges_[holder * sectors_per_line_ + s] = 1;
-        under_way.push(here);
-        if (s == sector) arrival = here;
+        if (entry != TimedCache::none && (lines[entry].present >> s & 1)) continue;
+        if (slice.find_pending(packet.id, s, entry) != TimedCache::none) continue;
+        while (registers.full()) wait();
+        // Room is made before DRAM is asked: a line whose sectors are all on their way holds up the slice.
+        std::uint32_t number = TimedCache::none;
+        while ((number = slice.send_for(packet.id, s, packet.set, entry)) == TimedCache::none) wait();
+        const Cycle here = read_dram(packet.output, time);
+        slice.set_arrival(number, here);
+        if (s == packet.sector) arrival = here;
     }
     return arrival;
 }
 
 Cycle MemorySide::read_dram(std::uint32_t slice, Cycle time) {
     ++dram_sectors_;
-    double& free = channel_[slice / slices_per_channel_ % timing_.dram_channels];
+    double& free = channel_[slice / slices_per_channel_ % rules_.timing.dram_channels];
     const double start = std::max(static_cast<double>(time), free);
     free = start + dram_cost_;
     return static_cast<Cycle>(std::ceil(start)) + dram_extra_;

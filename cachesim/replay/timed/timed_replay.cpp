@@ -14,17 +14,17 @@ namespace raycache::cachesim {
 struct TimedReplay::Impl {
     Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal)
         : regions(checked(all_regions)),
-          rules(checked_timed(gpu), regions, ideal),
-          memory(gpu, ideal),
+          ids(regions, checked_timed(gpu).l1().line_bytes),
+          rules(gpu, regions, ids, ideal),
+          memory(rules),
           streamed(regions, gpu.l1().sector_bytes) {
         total.sample = sample;
         make_sms();
-        window = std::max<Cycle>(1, memory.shortest_answer());
     }
 
     void make_sms() {
         sms.clear();
-        for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm) sms.emplace_back(rules, static_cast<std::uint16_t>(sm));
+        for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm) sms.emplace_back(rules, ids, static_cast<std::uint16_t>(sm));
     }
     void place_cta();
     void run_window();
@@ -49,11 +49,12 @@ struct TimedReplay::Impl {
     };
 
     const std::vector<traces::Region> regions;
+    LineIds ids;
     const TimedRules rules;
     MemorySide memory;
     StreamedTraffic streamed;
     std::deque<TimedSm> sms;
-    Cycle window = 1, now = 0;
+    Cycle now = 0;
     Cycle began = 0;  ///< the kernel
     std::vector<WarpPointer> cta;
     std::uint64_t placed = 0;
@@ -84,8 +85,8 @@ void TimedReplay::Impl::place_cta() {
 }
 
 void TimedReplay::Impl::run_window() {
-    const Cycle end = now + window;
-    memory.run_replies(end, [this](const MemorySide::Reply& reply) { sms[reply.output].deliver(reply); });
+    const Cycle begin = now, end = now + memory.window();
+    memory.run_replies(begin, end, [this](const MemorySide::Reply& reply) { sms[reply.output].deliver(reply); });
     for (std::size_t i = 0; i < sms.size(); ++i) {
         TimedSm& sm = sms[i];
         sm.run(end);
@@ -94,7 +95,7 @@ void TimedReplay::Impl::run_window() {
         for (const auto& [time, slot] : sm.freed) free.push_back({time, i, slot});
         sm.freed.clear();
     }
-    memory.run_requests(end);
+    memory.run_requests(begin, end);
     std::sort(free.begin(), free.end(), std::greater<>());
     now = end;
 }
@@ -127,13 +128,15 @@ TimedStatistics TimedReplay::finish() {
     TimedStatistics& t = i.total;
     for (const TimedSm& sm : i.sms) t += sm.statistics;
     const Gpu& gpu = i.rules.gpu;
+    t.instructions += t.loads;
+    t.issue.busy += static_cast<double>(t.loads);
     const double streamed =
         static_cast<double>(i.streamed.sectors()) * i.memory.dram_cycles_per_sector() / i.rules.timing.dram_channels;
     t.cycles = i.last_end() + i.rules.timing.launch_cycles + static_cast<Cycle>(std::ceil(streamed));
     t.seconds = static_cast<double>(t.cycles) / (i.rules.timing.clock_mhz * 1e6);
-    t.l2 = i.memory.l2();
+    (i.rules.three_levels() ? t.l3 : t.l2) = i.memory.answers();
     t.dram_sectors = i.memory.dram_sectors() + i.streamed.sectors();
-    const auto asked = static_cast<double>(t.l2.requests());
+    const auto asked = static_cast<double>(i.memory.answers().requests());
     t.issue.copies = std::uint64_t{gpu.sms} * i.rules.timing.schedulers;
     t.l1_port.copies = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
     t.crossbar = {asked * i.memory.crossbar_cycles_per_sector(), gpu.sms};

@@ -1,4 +1,4 @@
-// One SM in time: schedulers, the port of its L1s, their tags and misses under way.
+// One SM in time: schedulers, the ports of its L1s, their lines and misses under way; of a CPU (three levels), its L2.
 //
 // A warp that is ready issues the loads of its next visit, one per scheduler and cycle. Loads wait in order for the
 // port of their L1; each takes as many cycles there as Timing::l1_port says and looks up its sectors meanwhile. When
@@ -8,45 +8,28 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <queue>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "cachesim/cache/line_map.hpp"
-#include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/multiprocessor.hpp"
-#include "cachesim/replay/timed/fill_buffer.hpp"
+#include "cachesim/replay/timed/event_wheel.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
-#include "cachesim/replay/timed/sector_tags.hpp"
+#include "cachesim/replay/timed/ring.hpp"
+#include "cachesim/replay/timed/timed_cache.hpp"
+#include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 #include "cachesim/replay/timed/visit.hpp"
-#include "traces/header.hpp"
 #include "traces/record.hpp"
 
 namespace raycache::cachesim {
 
-/// What all SMs share and none changes.
-struct TimedRules {
-    TimedRules(const Gpu&, const std::vector<traces::Region>&, const Idealised&);
-
-    Gpu gpu;
-    Timing timing;
-    Idealised ideal;
-    LineMap l1_map;
-    std::vector<LoadShape> shapes;            ///< of each region
-    std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads
-    std::uint32_t sectors_per_line;
-    int line_of_sector;  ///< log2 of it
-    unsigned cta_slots;
-};
-
 class TimedSm {
 public:
-    TimedSm(const TimedRules&, std::uint16_t number);
+    /// `ids` number the lines of the regions; both must outlive this object.
+    TimedSm(const TimedRules&, LineIds& ids, std::uint16_t number);
 
     /// Makes a CTA's warps resident from that cycle on.
     void place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle from);
@@ -70,57 +53,61 @@ public:
     TimedStatistics statistics;
 
 private:
+    static constexpr std::uint32_t none = TimedCache::none;
+
     /// A resident warp.
     struct Warp {
         WarpPointer trace;
         const traces::Record *next = nullptr, *end = nullptr;
-        const std::uint32_t* elements = nullptr;  ///< of `next`
-        std::uint64_t age = 0;                    ///< order of becoming resident
+        const std::uint32_t* elements = nullptr;  ///< of `next`, from the first lane left on
+        std::uint32_t left = 0;                   ///< lanes of `next` that have not had their turn; 0: none has
         std::uint32_t flights = 0;                ///< that have not ended
+        std::uint64_t age = 0;                    ///< order of becoming resident
     };
     /// A visit of a warp that is under way. A warp has Timing::accesses_in_flight of them at once; each takes the
     /// warp's next access when it is done.
     struct Flight {
-        Visit visit;
-        /// By position in the visit (serve_port()): where the L1 held the sector that an earlier load looked up there.
-        std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
+        std::uint8_t scheduler = 0, bit = 0;  ///< its place there
         const LoadShape* shape = nullptr;
+        std::uint32_t region = 0;
+        std::uint32_t instructions = 0;
         std::uint32_t issued = 0;      ///< loads of the visit
         std::uint32_t at_port = 0;     ///< loads of the visit that have passed the port
         std::uint32_t unresolved = 0;  ///< sectors whose arrival is not known
-        Cycle arrival = 0;             ///< of the latest sector so far
-        Cycle first_issue = 0;
-        std::uint32_t instructions = 0;
         bool computing = false;
-    };
-    struct Event {
-        Cycle time;
-        std::uint32_t flight;
-        bool operator>(const Event& other) const {
-            return time != other.time ? time > other.time : flight > other.flight;
-        }
-    };
-    struct Load {
-        Cycle time;
-        std::uint32_t flight;
+        Cycle arrival = 0;  ///< of the latest sector so far
+        Cycle first_issue = 0;
+        Visit visit;
+        /// What the first load found, and when (LoadShape::steady): bit i: all sectors of element i were there, and
+        /// its line was used after `found_since`; in which cycle of the load the element was looked up.
+        std::uint32_t there = 0, found_since = 0;
+        std::array<std::uint8_t, traces::warp_lanes> cycle{};
+        /// By element of the visit and line of the element, modulo 2: where the L1 held it when it was last looked up.
+        std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
     };
     /// One L1 with its port.
     struct L1 {
-        explicit L1(const TimedRules&);
-        SectorTags tags;
-        std::optional<FillBuffer> fills;     ///< Allocate::on_fill; its entries are numbered behind those of `tags`
-        std::uint32_t entries;               ///< of `tags`
-        std::vector<std::uint16_t> merges;   ///< of each sector of each entry
-        std::vector<std::uint32_t> waiters;  ///< likewise: first of waiting_, or none
-        std::vector<Load> queue;             ///< loads in order of issue, from `head` on
-        std::size_t head = 0;
+        TimedCache cache;
+        Ring<std::uint32_t> queue{};  ///< flights whose loads wait, in order of issue
         Cycle port_free = 0;
-        std::uint32_t position = 0;   ///< of the load at the head: its next element, if it could not end
-        std::uint64_t under_way = 0;  ///< sectors
-        std::queue<Cycle> arrivals;   ///< of those whose arrival is known, in order
+        std::uint32_t position = 0;  ///< of the load at the front: what it asks for next, if it could not end
     };
+    /// The L2 of a CPU's core, and what its L1s ask of it.
+    struct PrivateLevel {
+        struct Request {
+            Cycle time = 0;
+            std::uint64_t line = 0;
+            std::uint32_t id = 0, number = 0;  ///< number: register of the L1
+            std::uint8_t sector = 0, l1 = 0;
+        };
+        TimedCache cache;
+        Ring<Request> queue{};
+        double free = 0;
+    };
+    /// Who waits for the arrival of a sector to be known: a flight, or a register of an L1.
     struct Waiter {
-        std::uint32_t flight, next;
+        std::uint32_t who, next;
+        std::uint8_t l1;
     };
     /// One scheduler. Bit b: flight b mod per_warp of warp slot (b div per_warp) * schedulers + its number.
     struct Scheduler {
@@ -128,36 +115,55 @@ private:
         unsigned last = 63;
         std::uint32_t queued = 0;  ///< its loads that have not reached the port
         Cycle free = 0;            ///< when it has issued all instructions so far
+        std::array<std::uint16_t, 64> flight_of{};  ///< by bit
     };
 
-    Warp& warp_of(std::uint32_t flight) { return warps_[flight / per_warp_]; }
-    Scheduler& scheduler_of(std::uint32_t flight) { return schedulers_[flight / per_warp_ % schedulers_.size()]; }
-    std::uint32_t flight_of(unsigned scheduler, unsigned bit) const {
-        return static_cast<std::uint32_t>((bit / per_warp_ * schedulers_.size() + scheduler) * per_warp_ +
-                                          bit % per_warp_);
+    Warp& warp_of(std::uint32_t flight) { return warps_[per_warp_ == 1 ? flight : flight / per_warp_]; }
+    /// The scheduler has become able to issue, or unable.
+    void note(std::uint32_t scheduler) {
+        const Scheduler& s = schedulers_[scheduler];
+        const std::uint64_t bit = std::uint64_t{1} << scheduler;
+        const bool can = s.ready != 0 && s.queued < rules_.timing.load_queue;
+        can_issue_ = can ? can_issue_ | bit : can_issue_ & ~bit;
     }
 
     void begin_visit(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);
     void compute(std::uint32_t flight, Cycle);
     void issue(unsigned scheduler, Cycle);
-    unsigned pick(const Scheduler&, unsigned number) const;
-    Cycle serve_port(L1&, std::uint8_t number, Cycle, Cycle end);
-    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint64_t sector, std::uint32_t& entry, Cycle);
+    unsigned pick(const Scheduler&) const;
     void visit_done(std::uint32_t flight);
 
+    Cycle serve_port(std::uint8_t number, Cycle, Cycle end);
+    template <L1Port port>
+    Cycle serve_apart(std::uint8_t number, Cycle, Cycle end);
+    Cycle serve_any(std::uint8_t number, Cycle, Cycle end);
+    Cycle end_load(L1&, Cycle begin, Cycle end);
+    Cycle serve_later(std::uint8_t number, Cycle, Cycle end);
+    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint32_t id, std::uint32_t sector,
+                 std::uint32_t& known, Cycle);
+    bool miss(L1&, std::uint8_t number, std::uint32_t flight, std::uint32_t sector, std::uint32_t id,
+              std::uint32_t& entry, Cycle);
+    Cycle retry_time(L1&, Cycle now, Cycle end) const;
+
+    void serve_private(Cycle);
+    void arrive_in_l1(std::uint8_t l1, std::uint32_t number, Cycle);
+    void wait(std::uint32_t& list, std::uint32_t who, std::uint8_t l1);
+
     const TimedRules& rules_;
+    LineIds& ids_;
     const std::uint16_t number_;
     std::vector<Warp> warps_;                ///< by slot
     std::vector<Flight> flights_;            ///< by slot * per_warp_ + number
     std::uint32_t per_warp_;                 ///< flights of a warp
     std::vector<std::uint32_t> unfinished_;  ///< warps of each CTA slot
     std::vector<Scheduler> schedulers_;
+    std::uint64_t can_issue_ = 0;  ///< bit s: scheduler s has a ready flight, and room for its load
     std::vector<L1> l1s_;
-    std::vector<Waiter> waiting_;
-    std::uint32_t free_waiter_ = SectorTags::none;
-    /// Warps whose data are there, and warps that begin a visit.
-    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    std::optional<PrivateLevel> private_;
+    std::vector<Waiter> waiters_;
+    std::uint32_t free_waiter_ = none;
+    EventWheel events_;  ///< flights whose data are there, and flights that begin a visit
     Cycle now_ = 0;
     Cycle answer_free_ = 0;
     Cycle last_end_ = 0;

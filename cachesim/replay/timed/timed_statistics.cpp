@@ -14,6 +14,7 @@ TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
     loads += other.loads;
     l1 += other.l1;
     l2 += other.l2;
+    l3 += other.l3;
     dram_sectors += other.dram_sectors;
     visit_cycles += other.visit_cycles;
     for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,

@@ -33,7 +33,7 @@ struct TimedStatistics {
     std::uint64_t warp_accesses = 0, lane_accesses = 0;
     std::uint64_t instructions = 0;  ///< warp instructions: loads, and those between accesses
     std::uint64_t loads = 0;         ///< load instructions of warps
-    LevelAnswers l1, l2;
+    LevelAnswers l1, l2, l3;  ///< l3: nothing where there are two levels
     std::uint64_t dram_sectors = 0;
 
     /// Busy cycles of each resource, summed over its copies, and how many copies there are: utilisation =

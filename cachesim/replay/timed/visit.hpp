@@ -10,6 +10,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
@@ -18,7 +19,8 @@ namespace raycache::cachesim {
 
 /// How the objects of one region are loaded.
 struct LoadShape {
-    LoadShape(const traces::Region& region, const FrontEnd& front_end, std::uint32_t sector_bytes)
+    LoadShape(const traces::Region& region, std::size_t number, const FrontEnd& front_end, const CacheGeometry& l1,
+              const LineIds& ids)
         : base(region.base),
           stride(region.stride),
           load_bytes(std::min(front_end.load_bytes, std::bit_ceil(region.element_size))),
@@ -27,12 +29,37 @@ struct LoadShape {
           lanes_per_request(load_bytes >= 16  ? front_end.lanes_per_request_16
                             : load_bytes >= 8 ? front_end.lanes_per_request_8
                                               : front_end.lanes_per_request_4),
-          sector_shift(std::countr_zero(sector_bytes)) {}
+          sector_shift(std::countr_zero(l1.sector_bytes)) {
+        const std::uint64_t page = std::uint64_t{most_banks} * l1.sector_bytes, place = base | stride;
+        const std::uint64_t pieces = (base % page + std::uint64_t{region.count} * stride) / load_bytes;
+        apart = lanes_per_request == traces::warp_lanes && place % load_bytes == 0 && load_bytes <= l1.sector_bytes &&
+                last_bytes <= l1.sector_bytes && stride >= l1.sector_bytes && ids.dense() &&
+                pieces < std::uint64_t{1} << 31 && page >= l1.line_bytes;
+        if (!apart) return;
+        first_piece = static_cast<std::uint32_t>(base % page / load_bytes);
+        piece_stride = static_cast<std::uint32_t>(stride / load_bytes);
+        first_id = static_cast<std::uint32_t>(base / page * page / l1.line_bytes - ids.offset(number));
+        sector_of_piece = sector_shift - std::countr_zero(load_bytes);
+        steady = place % l1.sector_bytes == 0 && l1.line_bytes % stride == 0 && base % l1.line_bytes == 0 &&
+                 region.element_size <= stride;
+    }
+
+    static constexpr std::uint32_t most_banks = 32;
 
     std::uint64_t base, stride;
     std::uint32_t load_bytes, loads, last_bytes;  ///< last_bytes: what the last load reads
     std::uint32_t lanes_per_request;
     int sector_shift;
+
+    /// All lanes go together, no load straddles sectors, and no two elements share one at the same place: every load
+    /// asks for one sector of each distinct element. Places are counted in pieces of load_bytes, from the start of the
+    /// line whose id is first_id.
+    bool apart = false;
+    std::uint32_t first_piece = 0, piece_stride = 0, first_id = 0;
+    int sector_of_piece = 0;  ///< log2 of pieces per sector
+
+    /// Moreover no element straddles lines, and all begin with a sector: loads of a visit take the port equally long.
+    bool steady = false;
 
     /// First and last sector that load k of this element reads.
     std::uint64_t first_sector(std::uint32_t element, std::uint32_t k) const {
@@ -44,7 +71,8 @@ struct LoadShape {
     }
 };
 
-/// The distinct elements that each group of lanes reads, in descending order.
+/// The distinct elements that each group of lanes reads, in descending order; of LoadShape::apart, the places of their
+/// first pieces.
 class Visit {
 public:
     void begin(const LoadShape& shape, std::uint32_t mask, const std::uint32_t* elements) {
@@ -52,6 +80,9 @@ public:
         ends_ = 0;
         if (shape.lanes_per_request == traces::warp_lanes) {
             add_group(elements, static_cast<unsigned>(std::popcount(mask)));
+            if (shape.apart)
+                for (unsigned i = 0; i < count_; ++i)
+                    elements_[i] = shape.first_piece + elements_[i] * shape.piece_stride;
             return;
         }
         for (unsigned lane = 0; lane < traces::warp_lanes; lane += shape.lanes_per_request) {
@@ -65,6 +96,7 @@ public:
 
     unsigned count() const { return count_; }
     std::uint32_t operator[](unsigned i) const { return elements_[i]; }
+    const std::uint32_t* data() const { return elements_.data(); }
     /// Whether element i is the last of its group.
     bool ends_group(unsigned i) const { return ends_ >> i & 1; }
 

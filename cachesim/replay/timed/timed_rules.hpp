@@ -1,0 +1,41 @@
+// What all SMs of a timed replay share and none changes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cachesim/cache/line_map.hpp"
+#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/timed/visit.hpp"
+#include "traces/header.hpp"
+
+namespace raycache::cachesim {
+
+/// What may be switched off, to see what it costs.
+struct Idealised {
+    bool perfect_l1 = false;          ///< every look-up in L1 hits
+    bool perfect_l2 = false;          ///< every look-up in the last level hits
+    bool infinite_bandwidth = false;  ///< no port, crossbar, slice or channel is ever taken
+    bool no_added_latency = false;    ///< all levels and DRAM answer as fast as L1
+    bool full_warps = false;          ///< consecutive visits of a warp to objects of one kind fill up its lanes
+};
+
+struct TimedRules {
+    TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds&, const Idealised&);
+
+    bool three_levels() const { return gpu.levels.size() == 3; }
+
+    Gpu gpu;
+    Timing timing;
+    Idealised ideal;
+    std::vector<LineMap> maps;                ///< of each level
+    std::vector<LoadShape> shapes;            ///< of each region
+    std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads
+    std::uint32_t sectors_per_line;
+    int line_of_sector;  ///< log2 of it
+    unsigned cta_slots;
+    std::uint32_t port_sectors;  ///< L1Port::tags: of one cycle
+};
+
+}  // namespace raycache::cachesim
