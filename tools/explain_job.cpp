@@ -97,9 +97,11 @@ Explained explain(const ExplainRequest& request) {
         traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
-    if (gpu.timing && request.timed && gpu.levels.size() == 2)  // what the timed replay can do
+    if (gpu.timing && request.timed) {
+        const std::vector<double> none(first.launches.size());
         for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
-            explanation.speed_ups.push_back({ideal, {}, {}});
+            explanation.speed_ups.push_back({ideal, {}, {}, none, none});
+    }
 
     ProgressBar bar("explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
     std::mutex mutex;
@@ -125,8 +127,11 @@ Explained explain(const ExplainRequest& request) {
         for (cachesim::TimedReplay& r : timed) times.push_back(r.finish());
         const std::lock_guard lock(mutex);  // sums of whole numbers: in any order the same
         traces[t]->findings += explainer.findings();
-        for (std::size_t i = 0; i < times.size(); ++i)
-            (t == 0 ? explanation.speed_ups[i].base : explanation.speed_ups[i].other) += times[i];
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            cachesim::SpeedUp& s = explanation.speed_ups[i];
+            (t == 0 ? s.base : s.other) += times[i];
+            (t == 0 ? s.base_cycles : s.other_cycles)[launch] = static_cast<double>(times[i].cycles);
+        }
         if (request.pixels) done.costs[t] += explainer.pixel_costs();
     };
     // Each launch begins with cold caches, so launches are independent: one thread each.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cachesim/report/table.hpp"
@@ -36,11 +37,42 @@ std::string change(double quotient) {
     return fmt::format("{:.0f} % {}", std::fabs(percent), percent < 0 ? "lower" : "higher");
 }
 
+/// "1.472 ±0.004"; `unit` follows the mean.
+std::string with_half_width(const Estimate& e, int digits, const char* unit = "") {
+    std::string text = fmt::format("{:.{}f}{}", e.mean, digits, unit);
+    if (e.half_width) text += fmt::format(" ±{:.{}f}", *e.half_width, digits);
+    return text;
+}
+
+/// Less work or fuller warps, whichever changes more.
+std::string cause_of_rest(double work, double divergence) {
+    constexpr double least = 0.005;
+    if (std::fabs(std::log(divergence)) > std::fabs(std::log(work)) && std::fabs(divergence - 1) > least)
+        return divergence < 1 ? "fewer divergent steps" : "more divergent steps";
+    if (std::fabs(work - 1) > least) return work < 1 ? "less work per ray" : "more work per ray";
+    return "work and SIMT efficiency as before";
+}
+
+/// What caches do: `rest` is the factor that perfect ones leave out, `traffic` that of L1-to-L2 sectors per ray.
+std::string role_of_caches(double rest, double traffic) {
+    constexpr double least = 0.01;
+    if (std::fabs(rest - 1) < least) return "the caches add nothing to it";
+    const std::string factor = fmt::format("{:.2f}x", std::max(rest, 1 / rest));
+    if (rest > 1)
+        return traffic < 1 ? "the other " + factor + " is locality"
+                           : "the other " + factor + " is no locality but shorter waits of the longest warps";
+    return traffic > 1 ? "more traffic takes " + factor + " of it back"
+                       : "longer waits of the longest warps take " + factor + " of it back";
+}
+
 }  // namespace
 
 std::span<const NamedIdeal> idealised_replays() { return replays; }
 
-double SpeedUp::value() const { return ratio(base.cycles, other.cycles); }
+Estimate SpeedUp::value() const {
+    const std::vector<double> ones(base_cycles.size(), 1.0);
+    return ratio_to_baseline({base_cycles, ones}, {other_cycles, ones});
+}
 
 std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, const std::string& other) {
     using Align = TextTable::Align;
@@ -55,7 +87,7 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
         table.row(
             {s.replay.name, fmt::format("{}", s.base.cycles),
              fmt::format("{:.2f}", ratio(all.front().base.cycles, s.base.cycles)), fmt::format("{}", s.other.cycles),
-             fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)), fmt::format("{:.3f}", s.value())});
+             fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)), with_half_width(s.value(), 3)});
     std::string text = table.text() + fmt::format("\nbase: {}; other: {}\n", base, other);
     for (const SpeedUp& s : all)
         if (*s.replay.meaning) text += fmt::format("{}: {}\n", s.replay.name, s.replay.meaning);
@@ -64,24 +96,31 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
 
 std::string sentence(const std::vector<SpeedUp>& all) {
     const SpeedUp& real = all.front();
-    const double predicted = real.value(), remains = all.at(1).value();
+    if (real.base.warp_accesses == 0 || real.other.warp_accesses == 0)
+        return "No speed-up to predict: a trace has no accesses.";
+    const Estimate predicted = real.value();
+    const double remains = all.at(1).value().mean;
     // lane accesses per ray, and warp accesses per lane access
     const double work = per_ray(real, real.base.lane_accesses, real.other.lane_accesses);
     const double divergence = per_ray(real, real.base.warp_accesses, real.other.warp_accesses) / work;
-    std::string cause = "work and SIMT efficiency as before";
-    if (std::fabs(std::log(divergence)) > std::fabs(std::log(work)) && std::fabs(divergence - 1) > 0.005)
-        cause = divergence < 1 ? "fewer divergent steps" : "more divergent steps";
-    else if (std::fabs(work - 1) > 0.005)
-        cause = work < 1 ? "less work per ray" : "more work per ray";
-    const std::string traffic = fmt::format("L1-to-L2 traffic per ray is {}, DRAM traffic {}",
-                                            change(per_ray(real, real.base.l2.requests(), real.other.l2.requests())),
-                                            change(per_ray(real, real.base.dram_sectors, real.other.dram_sectors)));
-    const double rest = predicted / remains;
-    const std::string role = std::fabs(rest - 1) < 0.01 ? "the caches add nothing to it"
-                             : rest > 1                 ? fmt::format("the other {:.2f}x is locality", rest)
-                                                        : fmt::format("the caches take {:.2f}x of it back", 1 / rest);
-    return fmt::format("{:.2f}x predicted; {:.2f}x would remain with perfect caches ({}); {}: {}.", predicted, remains,
-                       cause, role, traffic);
+    const double to_l2 = per_ray(real, real.base.l1.misses(), real.other.l1.misses());
+    std::string text = with_half_width(predicted, 2, "x");
+    if (predicted.half_width && std::fabs(predicted.mean - 1) <= *predicted.half_width)
+        text += " predicted, so no certain difference in time";
+    else
+        text += " predicted";
+    text += fmt::format(
+        "; {:.2f}x would remain with perfect caches ({}); {}: L1-to-L2 traffic per ray is {}, DRAM traffic {}.",
+        remains, cause_of_rest(work, divergence), role_of_caches(predicted.mean / remains, to_l2), change(to_l2),
+        change(per_ray(real, real.base.dram_sectors, real.other.dram_sectors)));
+    constexpr double few = 0.5;
+    const double taken = std::min(real.base.occupancy(), real.other.occupancy());
+    if (taken < few)
+        text += fmt::format(
+            " The warps take only {:.0f} % of the GPU's slots on average: these cycles are those of the "
+            "longest warps and no statement on throughput.",
+            100 * taken);
+    return text;
 }
 
 }  // namespace raycache::cachesim

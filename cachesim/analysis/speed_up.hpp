@@ -1,14 +1,17 @@
 // Where a predicted speed-up comes from: the same two launches, replayed again with one cost taken away at a time.
 //
-// What remains of a speed-up when every look-up hits L1 is work and SIMT efficiency, not locality.
+// What remains of a speed-up when every look-up hits L1 is work and SIMT efficiency, not locality. The rest is locality
+// only as far as traffic falls with it: where warps do not fill the GPU, the time is that of the longest of them, and
+// can change against the traffic.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "cachesim/replay/timed/memory_side.hpp"
+#include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
+#include "cachesim/report/estimate.hpp"
 
 namespace raycache::cachesim {
 
@@ -25,9 +28,10 @@ std::span<const NamedIdeal> idealised_replays();
 struct SpeedUp {
     NamedIdeal replay;
     TimedStatistics base, other;
+    std::vector<double> base_cycles, other_cycles;  ///< of each sample index, in the same order
 
     /// Cycles of the base over those of the other; above 1 the other is faster.
-    double value() const;
+    Estimate value() const;
 };
 
 /// A table with one line per replay: cycles of both, their ratio, and for each trace how much faster it is than as

@@ -53,6 +53,8 @@ struct CacheGeometry {
     /// 0: the sector alone.
     std::uint32_t fill_bytes = 0;
     Allocate allocate = Allocate::on_miss;
+    /// What the file says shared memory takes of the cache, in whole ways; `ways` are those that are left.
+    std::uint64_t carve_out_bytes = 0;
 
     std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
 };
@@ -74,7 +76,8 @@ struct Gpu {
     std::string name;         ///< "gtx-980-ti"
     std::string description;  ///< "GeForce GTX 980 Ti (GM200, Maxwell)"
     std::uint32_t sms = 0;
-    std::uint32_t warps_per_sm = 0;  ///< resident at once; a multiple of the CTA size is not required
+    std::uint32_t warps_per_sm = 0;      ///< resident at once; a multiple of the CTA size is not required
+    std::uint32_t max_warps_per_sm = 0;  ///< that an SM can hold, whatever the kernel; 0: not known
     std::uint32_t warps_per_cta = 8;
     std::uint32_t l1_per_sm =
         1;  ///< independent L1s of an SM (Maxwell: 2); its resident warps are dealt out among them

@@ -2,25 +2,29 @@
 
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/gpus/toml_reader.hpp"
+#include "traces/record.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
 
-constexpr const char* root_keys[] = {"name",      "description", "sms",       "warps_per_sm", "warps_per_cta",
-                                     "l1_per_sm", "simd_width",  "scheduler", "front_end",    "l1",
-                                     "l2",        "l3",          "timing"};
+constexpr const char* root_keys[] = {"name",          "description", "sms",        "warps_per_sm", "max_warps_per_sm",
+                                     "warps_per_cta", "l1_per_sm",   "simd_width", "scheduler",    "registers",
+                                     "front_end",     "l1",          "l2",         "l3",           "timing"};
+constexpr const char* register_keys[] = {"per_sm", "per_thread", "allocation"};
 constexpr const char* front_end_keys[] = {"load_bytes", "lanes_per_request_16", "lanes_per_request_8",
                                           "lanes_per_request_4"};
 constexpr const char* cache_keys[] = {
-    "sets",   "ways",       "line_bytes",       "sector_bytes", "index",           "index_masks", "policy",  "seed",
-    "slices", "slice_hash", "interleave_bytes", "slice_bits",   "slice_hash_from", "fill_bytes",  "allocate"};
+    "sets",     "ways",           "line_bytes", "sector_bytes",     "index",      "index_masks",     "policy",
+    "seed",     "slices",         "slice_hash", "interleave_bytes", "slice_bits", "slice_hash_from", "fill_bytes",
+    "allocate", "carve_out_bytes"};
 constexpr const char* timing_keys[] = {"clock_mhz",
                                        "launch_cycles",
                                        "schedulers",
                                        "node_instructions",
                                        "triangle_instructions",
                                        "texel_instructions",
+                                       "shading_instructions",
                                        "instruction_latency",
                                        "instruction_interval",
                                        "dependent_chains",
@@ -44,6 +48,7 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "l3_mshrs",
                                        "l3_mshr_merges",
                                        "crossbar_bytes_per_cycle",
+                                       "crossbar_queues",
                                        "l2_bytes_per_cycle",
                                        "l3_bytes_per_cycle",
                                        "dram_channels",
@@ -58,9 +63,11 @@ constexpr Choice<SliceHash> slice_hashes[] = {
 constexpr Choice<Allocate> allocations[] = {{"on_miss", Allocate::on_miss}, {"on_fill", Allocate::on_fill}};
 constexpr Choice<Scheduler> schedulers[] = {{"loose_round_robin", Scheduler::loose_round_robin},
                                             {"greedy_then_oldest", Scheduler::greedy_then_oldest}};
+constexpr Choice<CrossbarQueues> crossbar_queues[] = {{"outputs", CrossbarQueues::outputs},
+                                                      {"inputs", CrossbarQueues::inputs}};
 constexpr Choice<L1Port> l1_ports[] = {{"tags", L1Port::tags}, {"banks", L1Port::banks}};
 
-CacheGeometry read_cache(TomlReader::Section section) {
+CacheGeometry read_cache(TomlReader& file, TomlReader::Section section, const std::string& level) {
     CacheGeometry cache;
     cache.sets = section.number<std::uint64_t>("sets");
     cache.ways = section.number<std::uint64_t>("ways");
@@ -77,6 +84,16 @@ CacheGeometry read_cache(TomlReader::Section section) {
     cache.slice_hash_from = section.number_or("slice_hash_from", cache.slice_hash_from, true);
     cache.fill_bytes = section.number_or("fill_bytes", cache.sector_bytes);
     cache.allocate = section.choice_or("allocate", allocations, cache.allocate);
+    cache.carve_out_bytes = section.number_or("carve_out_bytes", cache.carve_out_bytes, true);
+    // Divided, not multiplied: limits.cpp refuses what would overflow later.
+    const std::uint64_t way_bytes = std::max<std::uint64_t>(1, cache.sets) * cache.slices * cache.line_bytes;
+    const std::uint64_t taken = (cache.carve_out_bytes + way_bytes - 1) / way_bytes;
+    if (taken >= cache.ways)
+        file.fail_at(
+            level + ".carve_out_bytes",
+            fmt::format("expected to leave at least one of {} ways of {} bytes, found {} bytes; carve out less",
+                        cache.ways, way_bytes, cache.carve_out_bytes));
+    cache.ways -= taken;
     return cache;
 }
 
@@ -97,6 +114,7 @@ Timing read_timing(TomlReader::Section section) {
     t.node_instructions = section.number<std::uint32_t>("node_instructions", true);
     t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
     t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
+    t.shading_instructions = section.number_or("shading_instructions", t.shading_instructions, true);
     t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
     t.instruction_interval = section.number_or("instruction_interval", t.instruction_interval);
     t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
@@ -120,11 +138,35 @@ Timing read_timing(TomlReader::Section section) {
     t.l3_mshrs = section.number_or("l3_mshrs", t.l3_mshrs);
     t.l3_mshr_merges = section.number_or("l3_mshr_merges", t.l3_mshr_merges);
     t.crossbar_bytes_per_cycle = section.positive("crossbar_bytes_per_cycle");
+    t.crossbar_queues = section.choice_or("crossbar_queues", crossbar_queues, t.crossbar_queues);
     t.l2_bytes_per_cycle = section.positive("l2_bytes_per_cycle");
     t.l3_bytes_per_cycle = section.positive_or("l3_bytes_per_cycle", t.l3_bytes_per_cycle);
     t.dram_channels = section.number<std::uint32_t>("dram_channels");
     t.dram_gb_s = section.positive("dram_gb_s");
     return t;
+}
+
+/// Resident warps of an SM: given, or as many CTAs as its registers hold.
+std::uint32_t read_residency(TomlReader& file, TomlReader::Section& root, const Gpu& gpu) {
+    std::uint32_t by_registers = 0;
+    if (root.has("registers")) {
+        TomlReader::Section section = root.section("registers", register_keys);
+        const auto per_sm = section.number<std::uint32_t>("per_sm");
+        const auto per_thread = section.number<std::uint32_t>("per_thread");
+        const auto allocation = section.number_or("allocation", 256u);
+        const std::uint64_t of_warp =
+            (std::uint64_t{per_thread} * traces::warp_lanes + allocation - 1) / allocation * allocation;
+        std::uint64_t warps = per_sm / of_warp;
+        if (gpu.max_warps_per_sm) warps = std::min<std::uint64_t>(warps, gpu.max_warps_per_sm);
+        by_registers = static_cast<std::uint32_t>(warps / gpu.warps_per_cta * gpu.warps_per_cta);
+        if (by_registers == 0 && !root.has("warps_per_sm"))
+            file.fail_at("registers.per_thread",
+                         fmt::format("expected a CTA of {} warps to fit an SM, found registers for {}; use fewer "
+                                     "registers or a smaller CTA",
+                                     gpu.warps_per_cta, warps));
+    }
+    if (!root.has("warps_per_sm") && by_registers) return by_registers;
+    return root.number<std::uint32_t>("warps_per_sm");
 }
 
 Gpu read(TomlReader& file) {
@@ -133,8 +175,9 @@ Gpu read(TomlReader& file) {
     gpu.name = root.text("name");
     gpu.description = root.text("description");
     gpu.sms = root.number<std::uint32_t>("sms");
-    gpu.warps_per_sm = root.number<std::uint32_t>("warps_per_sm");
+    gpu.max_warps_per_sm = root.number_or("max_warps_per_sm", gpu.max_warps_per_sm);
     gpu.warps_per_cta = root.number<std::uint32_t>("warps_per_cta");
+    gpu.warps_per_sm = read_residency(file, root, gpu);
     gpu.l1_per_sm = root.number<std::uint32_t>("l1_per_sm");
     gpu.simd_width = root.number_or("simd_width", gpu.simd_width);
     gpu.scheduler = root.choice_or("scheduler", schedulers, gpu.scheduler);
@@ -142,7 +185,8 @@ Gpu read(TomlReader& file) {
     gpu.levels.clear();
     const std::size_t levels = root.has("l3") ? 3 : 2;
     for (std::size_t level = 1; level <= levels; ++level)
-        gpu.levels.push_back(read_cache(root.section(fmt::format("l{}", level), cache_keys)));
+        gpu.levels.push_back(
+            read_cache(file, root.section(fmt::format("l{}", level), cache_keys), fmt::format("l{}", level)));
     if (root.has("timing")) gpu.timing = read_timing(root.section("timing", timing_keys));
     if (const auto problem = find_problem(gpu)) file.fail_at(problem->key, problem->message);
     return gpu;

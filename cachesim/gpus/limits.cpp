@@ -120,7 +120,32 @@ std::optional<GpuProblem> find_problem(const FrontEnd& front_end) {
 }
 
 std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
+    const std::uint32_t sector = gpu.l1().sector_bytes;
+    // Slower, one sector would take longer than all that is worth waiting for.
+    const double slowest = sector / 1e6;
+    for (const auto& [key, rate] : {std::pair{"timing.l1_bytes_per_cycle", t.l1_bytes_per_cycle},
+                                    std::pair{"timing.l2_bytes_per_cycle", t.l2_bytes_per_cycle},
+                                    std::pair{"timing.l3_bytes_per_cycle", t.l3_bytes_per_cycle},
+                                    std::pair{"timing.crossbar_bytes_per_cycle", t.crossbar_bytes_per_cycle}})
+        if (rate < slowest)
+            return GpuProblem{key, fmt::format("expected at least {} bytes a cycle (10^6 cycles for a sector of {} "
+                                               "bytes), found {}",
+                                               slowest, sector, rate)};
+    if (t.clock_mhz > 1e5)
+        return GpuProblem{"timing.clock_mhz", fmt::format("expected at most 100000 MHz, found {}", t.clock_mhz)};
+    if (const double rate = t.dram_gb_s * 1e3 / t.clock_mhz / t.dram_channels; rate < slowest)
+        return GpuProblem{"timing.dram_gb_s",
+                          fmt::format("expected at least {} bytes a cycle of each of {} channels, found {}; give more "
+                                      "GB/s or fewer channels",
+                                      slowest, t.dram_channels, rate)};
     if (auto p = not_in("timing.schedulers", t.schedulers, 1, 64)) return p;
+    if (auto p = not_in("timing.instruction_interval", t.instruction_interval, 1, 1000)) return p;
+    if (auto p = not_in("timing.accesses_in_flight", t.accesses_in_flight, 1, 64)) return p;
+    for (const auto& [key, count] :
+         {std::pair{"timing.load_queue", t.load_queue}, std::pair{"timing.l1_mshrs", t.l1_mshrs},
+          std::pair{"timing.l1_mshr_merges", t.l1_mshr_merges}, std::pair{"timing.l2_mshrs", t.l2_mshrs},
+          std::pair{"timing.l2_mshr_merges", t.l2_mshr_merges}})
+        if (auto p = not_in(key, count, 1, 65535)) return p;
     if (auto p = not_in("timing.dependent_chains", t.dependent_chains, 1, 64)) return p;
     if (auto p = not_a_power_of_two("timing.l1_banks", t.l1_banks)) return p;
     if (auto p = not_in("timing.l1_banks", t.l1_banks, 1, 32)) return p;
@@ -132,12 +157,14 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
           std::pair{"timing.instruction_latency", t.instruction_latency},
           std::pair{"timing.node_instructions", t.node_instructions},
           std::pair{"timing.triangle_instructions", t.triangle_instructions},
-          std::pair{"timing.texel_instructions", t.texel_instructions}})
-        if (auto p = not_in(key, cycles, 0, 1'000'000)) return p;
+          std::pair{"timing.texel_instructions", t.texel_instructions},
+          std::pair{"timing.shading_instructions", t.shading_instructions}})
+        if (auto p = not_in(key, cycles, 0, 100'000)) return p;
     const bool three = gpu.levels.size() == 3;
     if (three && (t.l3_mshrs == 0 || t.l3_mshr_merges == 0))
-        return GpuProblem{"timing.l3_mshrs", "expected registers for the misses of L3, found none; give l3_latency, "
-                                             "l3_mshrs, l3_mshr_merges and l3_bytes_per_cycle"};
+        return GpuProblem{"timing.l3_mshrs",
+                          "expected registers for the misses of L3, found none; give l3_latency, "
+                          "l3_mshrs, l3_mshr_merges and l3_bytes_per_cycle"};
     const std::uint32_t last = three ? t.l3_latency : t.l2_latency;
     if (t.l2_latency < t.l1_latency || last < t.l2_latency || t.l2_far_latency < t.l2_latency || t.dram_latency < last)
         return GpuProblem{"timing.l2_latency",
@@ -145,6 +172,20 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
                                       "where there is one, and none above dram_latency, found {}, {}, {}, {} and {}; "
                                       "each contains those above it",
                                       t.l1_latency, t.l2_latency, t.l2_far_latency, t.l3_latency, t.dram_latency)};
+    if (!three && (t.l2_partitions == 1) != (t.l2_far_latency == t.l2_latency))
+        return GpuProblem{
+            "timing.l2_far_latency",
+            fmt::format("expected another than l2_latency, {}, where there are several l2_partitions, and "
+                        "the same where there is one; found {} and {}",
+                        t.l2_latency, t.l2_far_latency, t.l2_partitions)};
+    // dram_latency is the average over the partitions, so what the far ones add on average is part of it.
+    if (const double near = t.dram_latency - static_cast<double>(t.l2_far_latency - t.l2_latency) *
+                                                 (t.l2_partitions - 1) / t.l2_partitions;
+        !three && near < t.l2_latency)
+        return GpuProblem{"timing.dram_latency",
+                          fmt::format("expected at least l2_latency and what far partitions add to it on average, "
+                                      "found {}",
+                                      t.dram_latency)};
     if (three && t.l2_partitions != 1)
         return GpuProblem{"timing.l2_partitions",
                           fmt::format("expected 1 where there is an L3, found {}", t.l2_partitions)};
@@ -157,6 +198,10 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
 std::optional<GpuProblem> find_problem(const Gpu& gpu) {
     if (auto p = not_in("sms", gpu.sms, 1, 4096)) return p;
     if (auto p = not_in("warps_per_sm", gpu.warps_per_sm, 1, 1024)) return p;
+    if (gpu.max_warps_per_sm && gpu.warps_per_sm > gpu.max_warps_per_sm)
+        return GpuProblem{"warps_per_sm", fmt::format("expected at most the {} that an SM holds (max_warps_per_sm), "
+                                                      "found {}; make fewer resident",
+                                                      gpu.max_warps_per_sm, gpu.warps_per_sm)};
     if (auto p = not_in("warps_per_cta", gpu.warps_per_cta, 1, 64)) return p;
     if (auto p = not_in("l1_per_sm", gpu.l1_per_sm, 1, 8)) return p;
     if (gpu.simd_width != 1 && gpu.simd_width != 2 && gpu.simd_width != 4 && gpu.simd_width != 8 &&

@@ -19,11 +19,17 @@ enum class L1Port {
     banks,
 };
 
+/// Where packets wait for a crossbar.
+enum class CrossbarQueues {
+    outputs,  ///< each waits for its output alone
+    inputs,   ///< in the order in which they came, behind others that wait for other outputs (GPGPU-Sim)
+};
+
 /// One level of caches.
 struct LevelTiming {
-    std::uint32_t latency = 0;                ///< cycles, those of the levels above included
+    std::uint32_t latency = 0;                 ///< cycles, those of the levels above included
     std::uint32_t mshrs = 0, mshr_merges = 0;  ///< sectors under way, and look-ups that may wait for each; of a slice
-    double bytes_per_cycle = 0;               ///< of each slice
+    double bytes_per_cycle = 0;                ///< of each slice
 };
 
 struct Timing {
@@ -35,6 +41,7 @@ struct Timing {
     /// Instructions between the loads of a visit and the next access, by kind of object, and the cycles from one to the
     /// next that depends on it.
     std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
+    std::uint32_t shading_instructions = 0;  ///< before lanes of a warp begin a ray: shading of the hit, set-up
     std::uint32_t instruction_latency = 4;
     std::uint32_t instruction_interval = 1;  ///< cycles from one of them to the next of the same scheduler
     std::uint32_t dependent_chains = 4;      ///< instructions of a visit that may be under way at once
@@ -49,12 +56,14 @@ struct Timing {
     std::uint32_t l1_banks = 4;
     std::uint32_t tags_per_cycle = 4;
     double l1_bytes_per_cycle = 128;
-    std::uint32_t l1_latency = 0, l2_latency = 0, l2_far_latency = 0, dram_latency = 0;  ///< cycles
+    std::uint32_t l1_latency = 0, l2_latency = 0, l2_far_latency = 0;  ///< cycles
+    std::uint32_t dram_latency = 0;                                    ///< on average over all partitions
     std::uint32_t l2_partitions = 1;  ///< an SM reaches its own after l2_latency, the others after l2_far_latency
     std::uint32_t l1_mshrs = 0, l1_mshr_merges = 0;  ///< sectors under way, and look-ups that may wait for each
     std::uint32_t l2_mshrs = 0, l2_mshr_merges = 0;  ///< of each slice
     double crossbar_bytes_per_cycle = 32;            ///< of each SM, each way
-    double l2_bytes_per_cycle = 32;                  ///< of each slice
+    CrossbarQueues crossbar_queues = CrossbarQueues::outputs;
+    double l2_bytes_per_cycle = 32;                                  ///< of each slice
     std::uint32_t l3_latency = 0, l3_mshrs = 0, l3_mshr_merges = 0;  ///< where there is an L3: then L2 belongs to an SM
     double l3_bytes_per_cycle = 32;
     std::uint32_t dram_channels = 1;

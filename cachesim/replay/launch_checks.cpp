@@ -69,11 +69,12 @@ const Gpu& checked_timed(const Gpu& gpu) {
             fmt::format("GPU \"{}\": expected a table [timing] for a timed replay, found none; add one, or replay "
                         "without time",
                         gpu.name));
-    if (std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight > 64 * gpu.timing->schedulers)
+    const std::uint64_t flights = std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight;
+    if (flights > 64 * gpu.timing->schedulers)
         throw Error(
-            fmt::format("GPU \"{}\": warps_per_sm: expected at most 64 for each of {} schedulers in a timed "
-                        "replay, found {}",
-                        gpu.name, gpu.timing->schedulers, gpu.warps_per_sm));
+            fmt::format("GPU \"{}\": warps_per_sm x timing.accesses_in_flight: expected at most 64 for each of {} "
+                        "schedulers in a timed replay, found {} x {}; make fewer warps resident",
+                        gpu.name, gpu.timing->schedulers, gpu.warps_per_sm, gpu.timing->accesses_in_flight));
     return gpu;
 }
 

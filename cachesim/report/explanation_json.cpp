@@ -109,7 +109,7 @@ std::string to_json(const Explanation& e) {
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},
                                  {"other_cycles", s.other.cycles},
-                                 {"speed_up", s.value()}});
+                                 {"speed_up", estimate(s.value())}});
     json["sentence"] = sentence(e);
     if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
     // A name that is no UTF-8 shows U+FFFD instead of ending the program.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <string_view>
 #include <tuple>
 
 #include "cachesim/report/estimate.hpp"
@@ -21,11 +23,20 @@ struct Named {
     const char* name;
     TimedStatistics::Resource TimedStatistics::*resource;
 };
+/// What may bind a launch.
 constexpr Named resources[] = {{"issue", &TimedStatistics::issue},
                                {"L1 port", &TimedStatistics::l1_port},
                                {"crossbar", &TimedStatistics::crossbar},
                                {"L2 slices", &TimedStatistics::l2_slices},
                                {"DRAM", &TimedStatistics::dram}};
+/// Parts of these, and the registers for misses.
+constexpr Named parts[] = {{"L1 tags", &TimedStatistics::l1_tags},
+                           {"L1 data", &TimedStatistics::l1_data},
+                           {"L1 MSHRs", &TimedStatistics::l1_mshrs},
+                           {"L2 MSHRs", &TimedStatistics::l2_mshrs}};
+
+/// The level that all SMs share.
+const LevelAnswers& shared_level(const TimedStatistics& t) { return t.l3.requests() ? t.l3 : t.l2; }
 
 TimedStatistics sum_of(const std::vector<TimedStatistics>& launches) {
     TimedStatistics sum;
@@ -43,8 +54,13 @@ double hit_rate(const LevelAnswers& a, bool merges_hit) {
     return ratio(static_cast<double>(a.hits + (merges_hit ? a.merges : 0)), static_cast<double>(a.requests()));
 }
 
-double gigabytes_per_second(const TimedStatistics& t, std::uint64_t sectors, std::uint32_t sector_bytes) {
-    return ratio(static_cast<double>(sectors) * sector_bytes / 1e9, t.seconds);
+double gigabytes_per_second(const TimedRow& row, std::uint64_t sectors) {
+    return ratio(static_cast<double>(sectors) * row.series.sector_bytes / 1e9, row.totals.seconds);
+}
+double l2_gb_s(const TimedRow& row) { return gigabytes_per_second(row, shared_level(row.totals).requests()); }
+double dram_gb_s(const TimedRow& row) { return gigabytes_per_second(row, row.totals.dram_sectors); }
+double visit_latency(const TimedStatistics& t) {
+    return ratio(static_cast<double>(t.visit_cycles), static_cast<double>(t.warp_accesses));
 }
 
 Sums cycles_over_rays(const TimedSeries& series) {
@@ -124,7 +140,16 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
                 row.bottleneck = r.name;
             }
         }
-        if (row.bottleneck_share < 0.5) row.bottleneck = "latency";
+        if (row.bottleneck_share < 0.5) row.bottleneck = fmt::format("latency; busiest: {}", row.bottleneck);
+        constexpr double few = 0.5;
+        const double waves =
+            ratio(static_cast<double>(row.totals.warps) / std::max<std::size_t>(1, series.launches.size()),
+                  static_cast<double>(row.totals.warp_slots));
+        if (row.totals.occupancy() < few && row.totals.warps)
+            report.notes.push_back(fmt::format(
+                "{}, N {}, {}: warps take {} % of the slots on average ({} waves a launch), so cycles are those of the "
+                "longest warps rather than throughput; trace more pixels, or model fewer SMs (--set sms=...)",
+                series.strategy, series.spp, series.gpu, percent(row.totals.occupancy()), decimals(waves, 2)));
         const auto find_base = [&](bool same_map) {
             return std::find_if(all.begin(), all.end(), [&](const TimedSeries& s) {
                 return s.strategy == baseline && comparable(s, series) &&
@@ -150,44 +175,63 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
 
 std::string to_text(const TimedReport& report) {
     using Align = TextTable::Align;
-    TextTable times, use;
-    for (TextTable* table : {&times, &use}) {
+    const bool three = std::any_of(report.rows.begin(), report.rows.end(),
+                                   [](const TimedRow& row) { return row.totals.l3.requests() > 0; });
+    TextTable times, hits, use, rates;
+    for (TextTable* table : {&times, &hits, &use, &rates}) {
         table->column("strategy", Align::left);
         table->column("N", Align::right);
         table->column("GPU", Align::left);
     }
-    for (const char* title :
-         {"cycles", "ms", "cycles/ray", "speed-up", "L1 hit %", "(merges miss)", "L2 hit %", "DRAM sectors"})
+    for (const char* title : {"cycles", "ms", "cycles/ray", "speed-up", "occupancy %"})
         times.column(title, Align::right);
     times.column("bottleneck", Align::left);
-    for (const char* title :
-         {"issue %", "L1 port %", "crossbar %", "L2 slices %", "DRAM %", "L2 GB/s", "DRAM GB/s", "visit latency"})
-        use.column(title, Align::right);
+    for (const char* level : {"L1", "L2", "L3"}) {
+        if (!three && std::string_view(level) == "L3") break;
+        hits.column(fmt::format("{} hit %", level), Align::right);
+        hits.column("(merges miss)", Align::right);
+    }
+    hits.column("DRAM sectors", Align::right);
+    for (const Named& r : resources) use.column(fmt::format("{} %", r.name), Align::right);
+    for (const Named& r : parts) use.column(fmt::format("{} %", r.name), Align::right);
+    for (const char* title : {"L2 GB/s", "peak", "DRAM GB/s", "peak", "visit latency"})
+        rates.column(title, Align::right);
     for (const TimedRow& row : report.rows) {
         const TimedStatistics& t = row.totals;
         const std::vector<std::string> identity{row.series.strategy, fmt::format("{}", row.series.spp), row.series.gpu};
-        std::vector<std::string> cells = identity;
-        cells.insert(cells.end(),
-                     {fmt::format("{}", t.cycles), decimals(1e3 * t.seconds, 3), with_interval(row.cycles_per_ray, 2),
-                      row.series.strategy == report.baseline ? "1" : with_interval(row.speed_up, 3),
-                      percent(hit_rate(t.l1, true)), percent(hit_rate(t.l1, false)), percent(hit_rate(t.l2, true)),
-                      fmt::format("{}", t.dram_sectors),
-                      fmt::format("{} ({} %)", row.bottleneck, percent(row.bottleneck_share))});
-        times.row(cells);
-        cells = identity;
+        const auto add = [&](TextTable& table, std::vector<std::string> cells) {
+            cells.insert(cells.begin(), identity.begin(), identity.end());
+            table.row(cells);
+        };
+        add(times, {fmt::format("{}", t.cycles), decimals(1e3 * t.seconds, 3), with_interval(row.cycles_per_ray, 2),
+                    row.series.strategy == report.baseline ? "1" : with_interval(row.speed_up, 3),
+                    percent(t.occupancy()), fmt::format("{} ({} %)", row.bottleneck, percent(row.bottleneck_share))});
+        std::vector<std::string> cells;
+        for (const LevelAnswers* level : {&t.l1, &t.l2, &t.l3}) {
+            if (!three && level == &t.l3) break;
+            cells.push_back(percent(hit_rate(*level, true)));
+            cells.push_back(percent(hit_rate(*level, false)));
+        }
+        cells.push_back(fmt::format("{}", t.dram_sectors));
+        add(hits, cells);
+        cells.clear();
         for (const Named& r : resources) cells.push_back(percent(utilisation(t, t.*r.resource)));
-        cells.push_back(decimals(gigabytes_per_second(t, t.l2.requests(), row.series.sector_bytes), 1));
-        cells.push_back(decimals(gigabytes_per_second(t, t.dram_sectors, row.series.sector_bytes), 1));
-        cells.push_back(decimals(ratio(static_cast<double>(t.visit_cycles), static_cast<double>(t.warp_accesses)), 0));
-        use.row(cells);
+        for (const Named& r : parts) cells.push_back(percent(utilisation(t, t.*r.resource)));
+        add(use, cells);
+        add(rates, {decimals(l2_gb_s(row), 1), decimals(t.peak_l2_gb_s, 0), decimals(dram_gb_s(row), 1),
+                    decimals(t.peak_dram_gb_s, 0), decimals(visit_latency(t), 0)});
     }
-    std::string text = times.text() + "\n" + use.text() + "\n";
+    std::string text = times.text() + "\n" + hits.text() + "\n" + use.text() + "\n" + rates.text() + "\n";
     text +=
-        "L1 and L2 hit %: of sector requests, one for each load instruction and sector; a request for a sector on its\n"
-        "way counts as a hit, or in the column \"merges miss\" as none. visit latency: cycles from the first load of "
-        "a\n"
-        "visit to its last data. speed-up: cycles of " +
-        (report.baseline.empty() ? std::string("a baseline") : report.baseline) + " over those of the row.\n";
+        "speed-up: cycles of " + (report.baseline.empty() ? std::string("a baseline") : report.baseline) +
+        " over those of the row. occupancy: share of the slots for warps that is taken, on\n"
+        "average. hit %: of sector requests, one for each load instruction and sector; a request for a sector on its "
+        "way\n"
+        "counts as a hit, or in the column \"merges miss\" as none. % of a resource: of its time; L1 tags and L1 data "
+        "are\nwhat the L1 port does, MSHRs registers for sectors on their way. L2 slices, L2 GB/s: of the level that "
+        "all SMs "
+        "share.\n"
+        "visit latency: cycles from the first load of a visit to its last data.\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
     return text;
 }
@@ -214,12 +258,18 @@ std::string to_json(const TimedReport& report) {
                                    {"instructions", t.instructions},
                                    {"loads", t.loads},
                                    {"l1", json_of(t.l1)},
-                                   {"l2", json_of(t.l2)},
-                                   {"dram_sectors", t.dram_sectors},
-                                   {"bottleneck", row.bottleneck}};
-        for (const Named& r : resources) out["utilisation"][r.name] = json_of(utilisation(t, t.*r.resource));
-        out["visit_latency"] =
-            json_of(ratio(static_cast<double>(t.visit_cycles), static_cast<double>(t.warp_accesses)));
+                                   {"l2", json_of(t.l2)}};
+        if (t.l3.requests()) out["l3"] = json_of(t.l3);
+        out["dram_sectors"] = t.dram_sectors;
+        out["bottleneck"] = row.bottleneck;
+        out["occupancy"] = json_of(t.occupancy());
+        for (const auto& list : {std::span<const Named>(resources), std::span<const Named>(parts)})
+            for (const Named& r : list) out["utilisation"][r.name] = json_of(utilisation(t, t.*r.resource));
+        out["l2_gb_s"] = json_of(l2_gb_s(row));
+        out["l2_peak_gb_s"] = json_of(t.peak_l2_gb_s);
+        out["dram_gb_s"] = json_of(dram_gb_s(row));
+        out["dram_peak_gb_s"] = json_of(t.peak_dram_gb_s);
+        out["visit_latency"] = json_of(visit_latency(t));
         rows.push_back(std::move(out));
     }
     return nlohmann::ordered_json{{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}}.dump(2) +
@@ -230,7 +280,9 @@ std::string to_csv(const TimedReport& report) {
     std::string text =
         "scene,strategy,sequence,thread_map,gpu,spp,cycles,seconds,cycles_per_ray,speed_up,rays,warp_accesses,"
         "lane_accesses,instructions,loads,l1_hits,l1_merges,l1_line_misses,l1_sector_misses,l2_hits,l2_merges,"
-        "l2_line_misses,l2_sector_misses,dram_sectors,issue,l1_port,crossbar,l2_slices,dram,bottleneck\n";
+        "l2_line_misses,l2_sector_misses,l3_hits,l3_merges,l3_line_misses,l3_sector_misses,dram_sectors,issue,l1_port,"
+        "crossbar,l2_slices,dram,l1_tags,l1_data,l1_mshrs,l2_mshrs,occupancy,l2_gb_s,l2_peak_gb_s,dram_gb_s,"
+        "dram_peak_gb_s,visit_latency,bottleneck\n";
     for (const TimedRow& row : report.rows) {
         const TimedStatistics& t = row.totals;
         const TimedSeries& s = row.series;
@@ -238,10 +290,14 @@ std::string to_csv(const TimedReport& report) {
                             s.thread_map, s.gpu, s.spp, t.cycles, t.seconds, row.cycles_per_ray.mean,
                             row.speed_up ? fmt::format("{}", row.speed_up->mean) : "", t.rays, t.warp_accesses,
                             t.lane_accesses, t.instructions, t.loads);
-        for (const LevelAnswers* a : {&t.l1, &t.l2})
+        for (const LevelAnswers* a : {&t.l1, &t.l2, &t.l3})
             text += fmt::format(",{},{},{},{}", a->hits, a->merges, a->line_misses, a->sector_misses);
         text += fmt::format(",{}", t.dram_sectors);
         for (const Named& r : resources) text += fmt::format(",{}", utilisation(t, t.*r.resource));
+        for (const Named& r : parts) text += fmt::format(",{}", utilisation(t, t.*r.resource));
+        for (const double value :
+             {t.occupancy(), l2_gb_s(row), t.peak_l2_gb_s, dram_gb_s(row), t.peak_dram_gb_s, visit_latency(t)})
+            text += fmt::format(",{}", value);
         text += fmt::format(",{}\n", row.bottleneck);
     }
     return text;

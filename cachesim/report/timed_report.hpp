@@ -22,8 +22,8 @@ struct TimedSeries {
 struct TimedRow {
     TimedSeries series;
     TimedStatistics totals;       ///< sums over all launches
-    std::string bottleneck;       ///< the resource in use most of the time, or "latency" if none is half of it
-    double bottleneck_share = 0;  ///< of its time
+    std::string bottleneck;       ///< the resource in use most of the time; behind "latency" if that is not half of it
+    double bottleneck_share = 0;  ///< of that resource's time
     Estimate cycles_per_ray;
     /// The baseline's cycles over this row's; over the same scene, sequence, N, thread map and GPU.
     std::optional<Estimate> speed_up;

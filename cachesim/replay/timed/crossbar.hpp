@@ -41,6 +41,16 @@ public:
 
     bool empty() const { return packets_ == 0; }
 
+    /// Before this cycle no packet moves.
+    Cycle next_time() const {
+        Cycle next = never;
+        if (packets_ == 0) return next;
+        for (std::size_t input = 0; input < queues_.size(); ++input)
+            if (!queues_[input].empty())
+                next = std::min(next, std::max(queues_[input].front().ready, static_cast<Cycle>(input_free_[input])));
+        return next;
+    }
+
     /// No packet reaches the output before that time.
     void block_output(std::size_t output, Cycle until) {
         output_free_[output] = std::max(output_free_[output], static_cast<double>(until));

@@ -18,10 +18,9 @@ MemorySide::MemorySide(const TimedRules& rules)
     : rules_(rules),
       timing_(rules.timing.level(rules.gpu.levels.size() - 1)),
       slice_count_(rules.gpu.levels.back().slices),
-      sets_(static_cast<std::uint32_t>(rules.gpu.levels.back().sets)),
       sectors_per_fill_(std::max(rules.gpu.levels.back().fill_bytes, rules.gpu.l1().sector_bytes) /
                         rules.gpu.l1().sector_bytes),
-      slices_per_channel_(std::max(1u, slice_count_ / rules.timing.dram_channels)),
+      by_inputs_(rules.timing.crossbar_queues == CrossbarQueues::inputs),
       level_extra_(rules.ideal.no_added_latency ? 0 : timing_.latency - rules.timing.l1_latency),
       dram_extra_(rules.ideal.no_added_latency ? 0 : rules.timing.dram_latency - timing_.latency),
       far_extra_(rules.ideal.no_added_latency || rules.three_levels() ? 0
@@ -31,16 +30,19 @@ MemorySide::MemorySide(const TimedRules& rules)
                                        rules.ideal.infinite_bandwidth)),
       slice_cost_(
           cycles_per_sector(timing_.bytes_per_cycle, rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
-      dram_cost_(cycles_per_sector(
-          rules.timing.dram_gb_s * 1e9 / (rules.timing.clock_mhz * 1e6) / rules.timing.dram_channels,
-          rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
+      dram_cost_(
+          cycles_per_sector(rules.timing.dram_gb_s * 1e9 / (rules.timing.clock_mhz * 1e6) / rules.timing.dram_channels,
+                            rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
       channel_(rules.timing.dram_channels),
-      to_slices_(rules.gpu.sms, slice_count_, slice_cost_, window_),
-      to_sms_(slice_count_, rules.gpu.sms, crossbar_cost_, window_),
+      to_slices_(by_inputs_ ? rules.gpu.sms : slice_count_, slice_count_, slice_cost_, window_),
+      to_sms_(by_inputs_ ? slice_count_ : rules.gpu.sms, rules.gpu.sms, crossbar_cost_, window_),
       sent_(rules.gpu.sms) {
     CacheGeometry slice = rules.gpu.levels.back();
     slice.slices = 1;
     for (std::uint32_t i = 0; i < slice_count_; ++i) slices_.emplace_back(slice, i, timing_.mshrs);
+    // The latency of DRAM is an average over near and far partitions.
+    const Cycle partitions = rules.timing.l2_partitions;
+    dram_extra_ -= std::min(dram_extra_, far_extra_ * (partitions - 1) / partitions);
 }
 
 void MemorySide::request(const MissRequest& miss) {
@@ -48,8 +50,9 @@ void MemorySide::request(const MissRequest& miss) {
     const double sent = std::max(static_cast<double>(miss.time), free);
     free = sent + crossbar_cost_;
     const LineMap::Place place = rules_.maps.back().place(miss.line);
-    to_slices_.add(miss.sm, {static_cast<Cycle>(std::ceil(sent)), place.slice, static_cast<std::uint32_t>(place.set),
-                             miss.id, miss.number, miss.sm, miss.sector, miss.l1});
+    to_slices_.add(by_inputs_ ? miss.sm : place.slice,
+                   {static_cast<Cycle>(std::ceil(sent)), place.slice, static_cast<std::uint32_t>(place.set), miss.id,
+                    miss.number, miss.sm, miss.sector, miss.l1});
 }
 
 void MemorySide::run_requests(Cycle begin, Cycle end) {
@@ -63,7 +66,7 @@ void MemorySide::serve(const Packet& packet, Cycle time) {
         const std::uint64_t partitions = rules_.timing.l2_partitions;
         if (packet.output * partitions / slice_count_ != packet.sm * partitions / rules_.gpu.sms) ready += far_extra_;
     }
-    to_sms_.add(packet.output, {ready, packet.sm, packet.number, packet.l1});
+    to_sms_.add(by_inputs_ ? packet.output : packet.sm, {ready, packet.sm, packet.number, packet.l1});
 }
 
 /// When the sector is in its slice.
@@ -114,17 +117,26 @@ Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
         while (registers.full()) wait();
         // Room is made before DRAM is asked: a line whose sectors are all on their way holds up the slice.
         std::uint32_t number = TimedCache::none;
-        while ((number = slice.send_for(packet.id, s, packet.set, entry)) == TimedCache::none) wait();
-        const Cycle here = read_dram(packet.output, time);
-        slice.set_arrival(number, here);
+        while ((number = slice.send_for(packet.id, s, packet.set, entry, time)) == TimedCache::none) wait();
+        const Cycle here = read_dram(packet, time);
+        waiting_ += slice.set_arrival(number, here);
         if (s == packet.sector) arrival = here;
     }
     return arrival;
 }
 
-Cycle MemorySide::read_dram(std::uint32_t slice, Cycle time) {
+std::size_t MemorySide::channel_of(const Packet& packet) const {
+    const auto channels = static_cast<std::uint32_t>(channel_.size());
+    if (slice_count_ % channels == 0) return packet.output / (slice_count_ / channels);
+    // The set tells lines of a slice apart; its neighbours go to other channels.
+    if (channels % slice_count_ == 0)
+        return packet.output * (channels / slice_count_) + packet.set % (channels / slice_count_);
+    return (packet.output + std::uint64_t{packet.set} * slice_count_) % channels;
+}
+
+Cycle MemorySide::read_dram(const Packet& packet, Cycle time) {
     ++dram_sectors_;
-    double& free = channel_[slice / slices_per_channel_ % rules_.timing.dram_channels];
+    double& free = channel_[channel_of(packet)];
     const double start = std::max(static_cast<double>(time), free);
     free = start + dram_cost_;
     return static_cast<Cycle>(std::ceil(start)) + dram_extra_;

@@ -2,11 +2,14 @@
 // next-free time.
 //
 // Requests cross from SMs to slices, replies from slices to SMs (cachesim/replay/timed/crossbar.hpp). The slice looks a
-// request up; data of a hit are ready to go back after the level's latency less that of L1, those of a miss after the
-// slice's DRAM channel was free and the latency of DRAM less that of the level more. A slice whose registers for misses
-// are all taken, or merge no more, takes no request until one is free.
+// request up; data of a hit are ready to go back after the level's latency less that of L1, those of a miss after a
+// DRAM channel was free and the latency of DRAM less that of the level more; those of a far partition after what that
+// adds. A slice whose registers for misses are all taken, or merge no more, takes no request until one is free. Slice s
+// has the channels from s * channels / slices on, those below (s + 1) * channels / slices or at least one, if one
+// number divides the other; else lines are dealt out among all channels.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -21,10 +24,10 @@ namespace raycache::cachesim {
 
 /// A sector that an SM lacks.
 struct MissRequest {
-    Cycle time = 0;              ///< of the look-up that missed
-    std::uint64_t line = 0;      ///< byte address / line size
-    std::uint32_t id = 0;        ///< LineIds
-    std::uint32_t number = 0;    ///< of the register to be told when the sector arrives
+    Cycle time = 0;            ///< of the look-up that missed
+    std::uint64_t line = 0;    ///< byte address / line size
+    std::uint32_t id = 0;      ///< LineIds
+    std::uint32_t number = 0;  ///< of the register to be told when the sector arrives
     std::uint16_t sm = 0;
     std::uint8_t sector = 0;
     std::uint8_t l1 = 0;  ///< which L1 of the SM
@@ -58,10 +61,15 @@ public:
     /// Lets requests of these cycles reach their slices. Call after all SMs ran them.
     void run_requests(Cycle begin, Cycle end);
 
+    /// Before this cycle nothing happens here unless an SM asks.
+    Cycle next_time() const { return std::min(to_slices_.next_time(), to_sms_.next_time()); }
+
     bool idle() const { return to_slices_.empty() && to_sms_.empty(); }
 
     const LevelAnswers& answers() const { return answers_; }
     std::uint64_t dram_sectors() const { return dram_sectors_; }
+    /// Cycles that registers for misses were taken, of all slices together.
+    Cycle waiting() const { return waiting_; }
     double dram_cycles_per_sector() const { return dram_cost_; }
     double slice_cycles_per_sector() const { return slice_cost_; }
     double crossbar_cycles_per_sector() const { return crossbar_cost_; }
@@ -78,13 +86,14 @@ private:
 
     void serve(const Packet&, Cycle);
     Cycle look_up(const Packet&, Cycle);
-    Cycle read_dram(std::uint32_t slice, Cycle);
+    Cycle read_dram(const Packet&, Cycle);
+    std::size_t channel_of(const Packet&) const;
 
     const TimedRules& rules_;
     LevelTiming timing_;  ///< of the level
-    std::uint32_t slice_count_, sets_, sectors_per_fill_;
+    std::uint32_t slice_count_, sectors_per_fill_;
+    bool by_inputs_;  ///< CrossbarQueues::inputs
     std::vector<TimedCache> slices_;
-    std::uint32_t slices_per_channel_;
     Cycle level_extra_, dram_extra_, far_extra_;  ///< latencies beyond that of the level above
     Cycle window_;
     double crossbar_cost_, slice_cost_, dram_cost_;  ///< cycles per sector
@@ -94,6 +103,7 @@ private:
     std::vector<double> sent_;  ///< when the port of each SM is free for its next request
     LevelAnswers answers_;
     std::uint64_t dram_sectors_ = 0;
+    Cycle waiting_ = 0;
 };
 
 }  // namespace raycache::cachesim

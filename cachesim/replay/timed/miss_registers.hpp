@@ -14,6 +14,7 @@ public:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
     struct Register {
+        Cycle since = 0;
         Cycle arrival = never;         ///< of the sector; `never` if it is not known yet
         std::uint32_t entry = 0;       ///< of the cache, or of the lines on their way where it allocates on fill
         std::uint32_t waiters = none;  ///< who waits for the arrival to be known: the cache's owner says what this is
@@ -38,7 +39,7 @@ public:
     }
 
     /// Must not be full. Returns its number.
-    std::uint32_t take(std::uint32_t entry, std::uint32_t sector, Cycle arrival) {
+    std::uint32_t take(std::uint32_t entry, std::uint32_t sector, Cycle since) {
         std::uint32_t number = free_;
         if (number == none) {
             number = static_cast<std::uint32_t>(registers_.size());
@@ -46,7 +47,7 @@ public:
         } else {
             free_ = registers_[number].next;
         }
-        registers_[number] = {arrival, entry, none, 1, sector, of_entry_[entry]};
+        registers_[number] = {since, never, entry, none, 1, sector, of_entry_[entry]};
         of_entry_[entry] = number;
         ++taken_;
         return number;

@@ -35,7 +35,7 @@ std::uint32_t TimedCache::find_pending(std::uint32_t line, std::uint32_t sector,
 }
 
 std::uint32_t TimedCache::send_for(std::uint32_t line, std::uint32_t sector, std::uint64_t set, std::uint32_t& entry,
-                                   Cycle arrival) {
+                                   Cycle now) {
     std::uint32_t holder = entry;
     if (coming_) {
         holder = coming_->find(line);
@@ -49,9 +49,7 @@ std::uint32_t TimedCache::send_for(std::uint32_t line, std::uint32_t sector, std
         lines_[holder].pending |= 1u << sector;
         entry = holder;
     }
-    const std::uint32_t number = registers_.take(holder, sector, never);
-    if (arrival != never) set_arrival(number, arrival);
-    return number;
+    return registers_.take(holder, sector, now);
 }
 
 void TimedCache::take_in() {

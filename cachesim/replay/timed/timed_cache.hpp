@@ -29,8 +29,7 @@ public:
 
     /// Takes in what arrives by `now`.
     void drain(Cycle now) {
-        while (next_arrival_ <= now) [[unlikely]]
-                take_in();
+        while (next_arrival_ <= now) [[unlikely]] take_in();
     }
     /// Of the next sector whose arrival is known, or `never`.
     Cycle next_arrival() const { return next_arrival_; }
@@ -39,21 +38,19 @@ public:
     /// none.
     std::uint32_t find_pending(std::uint32_t line, std::uint32_t sector, std::uint32_t entry) const;
 
-    /// An absent sector that is not on its way sets off. `set`: where the line goes. Returns its register, and in
-    /// `entry` where the line is or will be, if that is known; or none if all lines that could make room have a sector
-    /// on its way. There must be a free register.
+    /// An absent sector that is not on its way sets off, `now`. `set`: where the line goes. Returns its register, and
+    /// in `entry` where the line is or will be, if that is known; or none if all lines that could make room have a
+    /// sector on its way. There must be a free register.
     std::uint32_t send_for(std::uint32_t line, std::uint32_t sector, std::uint64_t set, std::uint32_t& entry,
-                           Cycle arrival = never);
+                           Cycle now);
 
-    /// What was unknown is known now; not before the last drain().
-    void set_arrival(std::uint32_t number, Cycle arrival) {
+    /// What was unknown is known now; not before the last drain(). Returns how long the register is taken.
+    Cycle set_arrival(std::uint32_t number, Cycle arrival) {
         registers_[number].arrival = arrival;
         arrivals_.insert({arrival, number}, [](const Arrival& a, const Arrival& b) { return a.time < b.time; });
         next_arrival_ = arrivals_.front().time;
+        return arrival - std::min(arrival, registers_[number].since);
     }
-
-    /// Sectors on their way whose arrival is known.
-    std::size_t known() const { return arrivals_.size(); }
 
 private:
     struct Arrival {

@@ -24,14 +24,18 @@ struct TimedReplay::Impl {
 
     void make_sms() {
         sms.clear();
-        for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm) sms.emplace_back(rules, ids, static_cast<std::uint16_t>(sm));
+        for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm)
+            sms.emplace_back(rules, ids, static_cast<std::uint16_t>(sm));
     }
     void place_cta();
     void run_window();
     void run_all() {
         if (!cta.empty()) place_cta();
+        all_placed = true;
         while (!idle()) run_window();
+        all_placed = false;
     }
+    void skip_idle_windows();
     Cycle last_end() const {
         Cycle last = began;
         for (const TimedSm& sm : sms) last = std::max(last, sm.last_end());
@@ -59,6 +63,7 @@ struct TimedReplay::Impl {
     std::vector<WarpPointer> cta;
     std::uint64_t placed = 0;
     std::vector<FreeSlot> free;  ///< earliest last
+    bool all_placed = false;     ///< no CTA of the kernel waits for a slot
     TimedStatistics total;
 };
 
@@ -98,6 +103,18 @@ void TimedReplay::Impl::run_window() {
     memory.run_requests(begin, end);
     std::sort(free.begin(), free.end(), std::greater<>());
     now = end;
+    skip_idle_windows();
+}
+
+/// Leaves out windows in which nothing happens, unless a CTA can begin.
+void TimedReplay::Impl::skip_idle_windows() {
+    if (!free.empty() && !all_placed) return;
+    Cycle next = memory.next_time();
+    for (const TimedSm& sm : sms) {
+        if (next <= now) return;
+        next = std::min(next, sm.next_time());
+    }
+    if (next != never && next > now) now += (next - now) / memory.window() * memory.window();
 }
 
 TimedReplay::TimedReplay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
@@ -137,8 +154,17 @@ TimedStatistics TimedReplay::finish() {
     (i.rules.three_levels() ? t.l3 : t.l2) = i.memory.answers();
     t.dram_sectors = i.memory.dram_sectors() + i.streamed.sectors();
     const auto asked = static_cast<double>(i.memory.answers().requests());
+    const std::uint64_t l1s = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
+    t.warp_slots = std::uint64_t{gpu.sms} * i.rules.cta_slots * gpu.warps_per_cta;
+    const LevelTiming last = i.rules.timing.level(gpu.levels.size() - 1);
+    t.peak_l2_gb_s = last.bytes_per_cycle * gpu.levels.back().slices * i.rules.timing.clock_mhz * 1e-3;
+    t.peak_dram_gb_s = i.rules.timing.dram_gb_s;
     t.issue.copies = std::uint64_t{gpu.sms} * i.rules.timing.schedulers;
-    t.l1_port.copies = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
+    t.l1_port.copies = l1s;
+    t.l1_tags = {t.l1_tags.busy * i.rules.tag_cost, l1s};
+    t.l1_data = {static_cast<double>(t.l1.requests()) * i.rules.data_cost, l1s};
+    t.l1_mshrs.copies = l1s * i.rules.timing.l1_mshrs;
+    t.l2_mshrs = {static_cast<double>(i.memory.waiting()), std::uint64_t{gpu.levels.back().slices} * last.mshrs};
     t.crossbar = {asked * i.memory.crossbar_cycles_per_sector(), gpu.sms};
     t.l2_slices = {asked * i.memory.slice_cycles_per_sector(), gpu.levels.back().slices};
     t.dram = {static_cast<double>(t.dram_sectors) * i.memory.dram_cycles_per_sector(), i.rules.timing.dram_channels};

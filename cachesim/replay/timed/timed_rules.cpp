@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace raycache::cachesim {
 
@@ -18,6 +19,11 @@ std::uint32_t instructions_of(const Timing& timing, traces::ObjectKind kind) {
     }
 }
 
+std::uint32_t whole(double number) {
+    const double most = traces::warp_lanes * 4096.0;  // more than any load asks for
+    return std::floor(number) == number ? static_cast<std::uint32_t>(std::min(number, most)) : 0;
+}
+
 }  // namespace
 
 TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions, const LineIds& ids,
@@ -28,8 +34,13 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
       sectors_per_line(g.l1().line_bytes / g.l1().sector_bytes),
       line_of_sector(std::countr_zero(sectors_per_line)),
       cta_slots(std::max(1u, g.warps_per_sm / g.warps_per_cta)),
-      port_sectors(std::max(1u, static_cast<std::uint32_t>(timing.l1_bytes_per_cycle / g.l1().sector_bytes))) {
-    for (const CacheGeometry& level : g.levels) maps.emplace_back(level, ids.last_line());
+      tag_cost(1.0 / timing.tags_per_cycle),
+      data_cost(g.l1().sector_bytes / timing.l1_bytes_per_cycle),
+      port_sectors(whole(timing.l1_bytes_per_cycle / g.l1().sector_bytes)) {
+    for (const CacheGeometry& level : g.levels) {
+        maps.emplace_back(level, ids.last_line());
+        fill_sectors.push_back(std::max(1u, level.fill_bytes / level.sector_bytes));
+    }
     for (std::size_t i = 0; i < regions.size(); ++i) {
         shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
         instructions.push_back(instructions_of(timing, regions[i].kind));

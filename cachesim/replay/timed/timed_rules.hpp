@@ -35,7 +35,9 @@ struct TimedRules {
     std::uint32_t sectors_per_line;
     int line_of_sector;  ///< log2 of it
     unsigned cta_slots;
-    std::uint32_t port_sectors;  ///< L1Port::tags: of one cycle
+    double tag_cost, data_cost;               ///< L1Port::tags: cycles of a line, and of a sector
+    std::uint32_t port_sectors;               ///< of one cycle, if that is a whole number; else 0
+    std::vector<std::uint32_t> fill_sectors;  ///< of each level: what a miss fetches, an aligned piece of the line
 };
 
 }  // namespace raycache::cachesim

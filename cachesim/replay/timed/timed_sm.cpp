@@ -44,6 +44,8 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
         warp.elements = trace.elements.data();
         warp.left = 0;
         warp.age = placed_++;
+        warp.since = from;
+        ++statistics.warps;
         warp.flights = per_warp_;
         ++resident_;
         ++unfinished_[cta_slot];
@@ -56,7 +58,12 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
 
 void TimedSm::begin_visit(std::uint32_t number, Cycle time) {
     Warp& warp = warp_of(number);
-    while (warp.next != warp.end && !warp.next->is_access()) ++warp.next;
+    std::uint32_t starts = 0;  // of rays
+    for (; warp.next != warp.end && !warp.next->is_access(); ++warp.next) ++starts;
+    if (starts > 0 && rules_.timing.shading_instructions > 0) {
+        events_.push(run_instructions(number, time, starts * rules_.timing.shading_instructions, 0), number);
+        return;
+    }
     if (warp.next == warp.end) {
         end_flight(number, time);
         return;
@@ -92,11 +99,29 @@ void TimedSm::begin_visit(std::uint32_t number, Cycle time) {
 
 void TimedSm::end_flight(std::uint32_t number, Cycle time) {
     last_end_ = std::max(last_end_, time);
-    if (--warp_of(number).flights > 0) return;
-    warp_of(number).trace.reset();
+    Warp& warp = warp_of(number);
+    if (--warp.flights > 0) return;
+    statistics.warp_cycles += time - warp.since;
+    warp.trace.reset();
     --resident_;
     const unsigned cta = number / per_warp_ / rules_.gpu.warps_per_cta;
     if (--unfinished_[cta] == 0) freed.emplace_back(time, cta);
+}
+
+/// Instructions of a flight that begin at that time, but for the `early` ones that have issued meanwhile; returns when
+/// the last of them has.
+Cycle TimedSm::run_instructions(std::uint32_t number, Cycle time, std::uint32_t count, std::uint32_t early) {
+    const Timing& timing = rules_.timing;
+    const std::uint32_t interval = timing.instruction_interval, left = count - early;
+    Scheduler& scheduler = schedulers_[flights_[number].scheduler];
+    statistics.instructions += count;
+    statistics.issue.busy += static_cast<double>(count) * interval;
+    scheduler.free = std::max(scheduler.free, time) + Cycle{count} * interval;
+    if (left == 0) return time;
+    const std::uint32_t chains = timing.dependent_chains;
+    const std::uint32_t round = std::max(timing.instruction_latency, chains * interval);
+    const Cycle end = time + Cycle{(left - 1) / chains} * round + (left - 1) % chains * interval + 1;
+    return std::max(end, scheduler.free - Cycle{early} * interval);
 }
 
 /// The data of a visit are there: its instructions follow. Those that need only earlier data have issued meanwhile.
@@ -104,22 +129,17 @@ void TimedSm::compute(std::uint32_t number, Cycle time) {
     Flight& flight = flights_[number];
     flight.computing = true;
     statistics.visit_cycles += time - flight.first_issue;
-    statistics.instructions += flight.instructions;
-    const Timing& timing = rules_.timing;
-    const std::uint32_t interval = timing.instruction_interval;
     const std::uint32_t early = std::min(flight.shape->loads - 1, flight.instructions);
-    const std::uint32_t left = flight.instructions - early;
-    Scheduler& scheduler = schedulers_[flight.scheduler];
-    scheduler.free = std::max(scheduler.free, time) + Cycle{flight.instructions} * interval;
-    statistics.issue.busy += static_cast<double>(flight.instructions) * interval;
-    Cycle end = time;
-    if (left > 0) {
-        const std::uint32_t chains = timing.dependent_chains;
-        const std::uint32_t round = std::max(timing.instruction_latency, chains * interval);
-        end = time + Cycle{(left - 1) / chains} * round + (left - 1) % chains * interval + 1;
-        end = std::max(end, scheduler.free - Cycle{early} * interval);
-    }
-    events_.push(end, number);
+    events_.push(run_instructions(number, time, flight.instructions, early), number);
+}
+
+/// Before this cycle nothing happens here unless a reply arrives.
+Cycle TimedSm::next_time() const {
+    if (can_issue_ || (private_ && !private_->queue.empty())) return now_;
+    Cycle next = events_.time();
+    for (const L1& l1 : l1s_)
+        if (!l1.queue.empty()) next = std::min(next, l1.port_free);
+    return next;
 }
 
 unsigned TimedSm::pick(const Scheduler& scheduler) const {

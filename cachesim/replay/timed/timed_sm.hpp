@@ -37,6 +37,9 @@ public:
     /// Simulates cycles before `end`. Whatever needs a reply that is not there yet waits.
     void run(Cycle end);
 
+    /// Before this cycle nothing happens here unless a sector arrives.
+    Cycle next_time() const;
+
     /// A sector arrives; its cycle is not before the end of the last run.
     void deliver(const MemorySide::Reply&);
 
@@ -63,6 +66,7 @@ private:
         std::uint32_t left = 0;                   ///< lanes of `next` that have not had their turn; 0: none has
         std::uint32_t flights = 0;                ///< that have not ended
         std::uint64_t age = 0;                    ///< order of becoming resident
+        Cycle since = 0;                          ///< it is resident
     };
     /// A visit of a warp that is under way. A warp has Timing::accesses_in_flight of them at once; each takes the
     /// warp's next access when it is done.
@@ -79,8 +83,8 @@ private:
         Cycle first_issue = 0;
         Visit visit;
         /// What the first load found, and when (LoadShape::steady): bit i: all sectors of element i were there, and
-        /// its line was used after `found_since`; in which cycle of the load the element was looked up.
-        std::uint32_t there = 0, found_since = 0;
+        /// its line was used after `found_since`; how many lines these are; in which cycle of the load each was asked.
+        std::uint32_t there = 0, found_since = 0, lines = 0;
         std::array<std::uint8_t, traces::warp_lanes> cycle{};
         /// By element of the visit and line of the element, modulo 2: where the L1 held it when it was last looked up.
         std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
@@ -90,7 +94,12 @@ private:
         TimedCache cache;
         Ring<std::uint32_t> queue{};  ///< flights whose loads wait, in order of issue
         Cycle port_free = 0;
-        std::uint32_t position = 0;  ///< of the load at the front: what it asks for next, if it could not end
+        std::uint32_t position = 0;  ///< of the load at the front: the element to go on with
+        std::uint32_t sector = 0;    ///< and how many of its sectors are done (serve_any())
+        /// L1Port::tags: when the data path and the tag stage take one more; the latter in parts of a cycle, a tag
+        /// each.
+        double data_free = 0;
+        std::uint64_t tags_free = 0;
     };
     /// The L2 of a CPU's core, and what its L1s ask of it.
     struct PrivateLevel {
@@ -113,8 +122,8 @@ private:
     struct Scheduler {
         std::uint64_t ready = 0;
         unsigned last = 63;
-        std::uint32_t queued = 0;  ///< its loads that have not reached the port
-        Cycle free = 0;            ///< when it has issued all instructions so far
+        std::uint32_t queued = 0;                   ///< its loads that have not reached the port
+        Cycle free = 0;                             ///< when it has issued all instructions so far
         std::array<std::uint16_t, 64> flight_of{};  ///< by bit
     };
 
@@ -129,6 +138,7 @@ private:
 
     void begin_visit(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);
+    Cycle run_instructions(std::uint32_t flight, Cycle, std::uint32_t count, std::uint32_t early);
     void compute(std::uint32_t flight, Cycle);
     void issue(unsigned scheduler, Cycle);
     unsigned pick(const Scheduler&) const;
@@ -145,6 +155,8 @@ private:
     bool miss(L1&, std::uint8_t number, std::uint32_t flight, std::uint32_t sector, std::uint32_t id,
               std::uint32_t& entry, Cycle);
     Cycle retry_time(L1&, Cycle now, Cycle end) const;
+    Cycle port_ready(const L1&, bool new_line, Cycle) const;
+    void take_port(L1&, bool new_line, Cycle);
 
     void serve_private(Cycle);
     void arrive_in_l1(std::uint8_t l1, std::uint32_t number, Cycle);

@@ -7,6 +7,23 @@
 
 namespace raycache::cachesim {
 
+namespace {
+
+/// What a fill brings beside a missing sector that has been sent for, as far as there are registers.
+template <class Sent>
+void send_for_neighbours(TimedCache& cache, std::uint32_t fill_sectors, std::uint32_t line, std::uint32_t sector,
+                         std::uint64_t set, std::uint32_t& entry, Cycle now, const Sent& sent) {
+    const std::uint32_t first = sector / fill_sectors * fill_sectors;
+    for (std::uint32_t s = first; s < first + fill_sectors && !cache.registers().full(); ++s) {
+        if (entry != TimedCache::none && (cache.lines()[entry].present >> s & 1)) continue;
+        if (cache.find_pending(line, s, entry) != TimedCache::none) continue;
+        const std::uint32_t number = cache.send_for(line, s, set, entry, now);
+        if (number != TimedCache::none) sent(number, s);
+    }
+}
+
+}  // namespace
+
 void TimedSm::wait(std::uint32_t& list, std::uint32_t who, std::uint8_t l1) {
     std::uint32_t waiter = free_waiter_;
     if (waiter == none) {
@@ -22,7 +39,7 @@ void TimedSm::wait(std::uint32_t& list, std::uint32_t who, std::uint8_t l1) {
 /// The arrival of a sector that was sent for is known.
 void TimedSm::arrive_in_l1(std::uint8_t number, std::uint32_t register_number, Cycle time) {
     TimedCache& cache = l1s_[number].cache;
-    cache.set_arrival(register_number, time);
+    statistics.l1_mshrs.busy += static_cast<double>(cache.set_arrival(register_number, time));
     answer_free_ = std::max(answer_free_, time);
     std::uint32_t waiter = cache.registers()[register_number].waiters;
     while (waiter != none) {
@@ -60,8 +77,7 @@ void TimedSm::deliver(const MemorySide::Reply& reply) {
 void TimedSm::serve_private(Cycle now) {
     PrivateLevel& level = *private_;
     const Timing& timing = rules_.timing;
-    const double cost =
-        rules_.ideal.infinite_bandwidth ? 0 : rules_.gpu.l1().sector_bytes / timing.l2_bytes_per_cycle;
+    const double cost = rules_.ideal.infinite_bandwidth ? 0 : rules_.gpu.l1().sector_bytes / timing.l2_bytes_per_cycle;
     const Cycle latency = rules_.ideal.no_added_latency ? 0 : timing.l2_latency - timing.l1_latency;
     LevelAnswers& answers = statistics.l2;
     while (!level.queue.empty() && level.free <= static_cast<double>(now)) {
@@ -86,13 +102,18 @@ void TimedSm::serve_private(Cycle now) {
         } else {
             if (registers.full()) return;
             const bool line_there = entry != none;
-            const std::uint32_t number =
-                level.cache.send_for(request.id, request.sector, rules_.maps[1](request.line), entry);
+            const std::uint64_t set = line_there ? 0 : rules_.maps[1](request.line);
+            const std::uint32_t number = level.cache.send_for(request.id, request.sector, set, entry, now);
             if (number == none) return;
             if (line_there) lines.use(entry);
             ++(line_there ? answers.sector_misses : answers.line_misses);
             wait(registers[number].waiters, request.number, request.l1);
             misses.push_back({now, request.line, request.id, number, number_, request.sector, 0});
+            send_for_neighbours(level.cache, rules_.fill_sectors[1], request.id, request.sector, set, entry, now,
+                                [&](std::uint32_t neighbour, std::uint32_t sector) {
+                                    misses.push_back({now, request.line, request.id, neighbour, number_,
+                                                      static_cast<std::uint8_t>(sector), 0});
+                                });
         }
         level.free = std::max(level.free, static_cast<double>(now)) + cost;
         level.queue.pop();
@@ -123,16 +144,23 @@ bool TimedSm::miss(L1& l1, std::uint8_t number, std::uint32_t flight_number, std
     if (registers.full()) return false;
     const std::uint64_t line = ids_.line(id, flight.region);
     const bool line_there = entry != none;
-    const std::uint32_t sent = l1.cache.send_for(id, sector, line_there ? 0 : rules_.maps[0](line), entry);
+    const std::uint64_t set = line_there ? 0 : rules_.maps[0](line);
+    const std::uint32_t sent = l1.cache.send_for(id, sector, set, entry, time);
     if (sent == none) return false;
     if (line_there) lines.use(entry);
     ++(line_there ? answers.sector_misses : answers.line_misses);
     wait(registers[sent].waiters, flight_number, number);
     ++flight.unresolved;
-    if (private_)
-        private_->queue.push({time, line, id, sent, static_cast<std::uint8_t>(sector), number});
-    else
-        misses.push_back({time, line, id, sent, number_, static_cast<std::uint8_t>(sector), number});
+    const auto ask = [&](std::uint32_t register_number, std::uint32_t of_line) {
+        const auto s = static_cast<std::uint8_t>(of_line);
+        if (private_)
+            private_->queue.push({time, line, id, register_number, s, number});
+        else
+            misses.push_back({time, line, id, register_number, number_, s, number});
+    };
+    ask(sent, sector);
+    if (rules_.fill_sectors[0] > 1)
+        send_for_neighbours(l1.cache, rules_.fill_sectors[0], id, sector, set, entry, time, ask);
     return true;
 }
 
@@ -162,7 +190,8 @@ Cycle TimedSm::retry_time(L1& l1, Cycle now, Cycle end) const {
 Cycle TimedSm::serve_port(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
     const Flight& flight = flights_[l1.queue.front()];
-    if (!flight.shape->apart) return serve_any(number, time, end);
+    const bool even = rules_.timing.l1_port == L1Port::banks || rules_.port_sectors != 0;
+    if (!flight.shape->apart || !even) return serve_any(number, time, end);
     return rules_.timing.l1_port == L1Port::banks ? serve_apart<L1Port::banks>(number, time, end)
                                                   : serve_apart<L1Port::tags>(number, time, end);
 }
@@ -171,7 +200,7 @@ Cycle TimedSm::serve_port(std::uint8_t number, Cycle time, Cycle end) {
 Cycle TimedSm::end_load(L1& l1, Cycle begin, Cycle end) {
     const std::uint32_t number = l1.queue.front();
     Flight& flight = flights_[number];
-    l1.position = 0;
+    l1.position = l1.sector = 0;
     l1.queue.pop();
     statistics.l1_port.busy += static_cast<double>(end - begin);
     --schedulers_[flight.scheduler].queued;
@@ -206,8 +235,8 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
         if (time < end) {
             const std::uint32_t sector = (flight.visit[i] + k) >> shape.sector_of_piece;
             const std::uint32_t id = shape.first_id + (sector >> rules_.line_of_sector);
-            done = look_up(l1, number, flight_number, id, sector & (rules_.sectors_per_line - 1), flight.entries[i],
-                           time);
+            done =
+                look_up(l1, number, flight_number, id, sector & (rules_.sectors_per_line - 1), flight.entries[i], time);
         }
         if (!done) {
             l1.position = i;
@@ -219,6 +248,7 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
     }
     use_up_to(count);
     lines.give_time(first_use + count - 1);
+    statistics.l1_tags.busy += flight.lines;
     statistics.l1.hits += std::popcount(flight.there);
     const Cycle last = begin + flight.cycle[count - 1] * step;
     flight.arrival = std::max(flight.arrival, last);
@@ -233,7 +263,8 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
     Flight& flight = flights_[flight_number];
     const LoadShape& shape = *flight.shape;
     const std::uint32_t k = flight.at_port;
-    if (k > 0 && flight.there && l1.position == 0 && time + flight.cycle[flight.visit.count() - 1] < end && l1.cache.lines().newest_evicted() <= flight.found_since)
+    if (k > 0 && flight.there && l1.position == 0 && time + flight.cycle[flight.visit.count() - 1] < end &&
+        l1.cache.lines().newest_evicted() <= flight.found_since)
         return serve_later(number, time, end);
 
     TimedCache& cache = l1.cache;
@@ -256,6 +287,7 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
     std::uint32_t bits = 0, tags = 0, sectors = 0;  // of this cycle: banks taken; lines; sectors
     std::uint32_t id_before = i > 0 ? first_id + ((pieces[i - 1] + k) >> sector_of_piece >> line_of_sector) : none;
     std::uint64_t hits = 0;
+    std::uint32_t lines_asked = 0;
     std::uint32_t used = lines.take_time(traces::warp_lanes);
     const bool first = k == 0 && i == 0;
     if (first) flight.found_since = used;
@@ -284,9 +316,10 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
             }
             ++sectors;
             tags += new_line;
+            lines_asked += new_line;
             id_before = id;
         }
-        flight.cycle[i] = static_cast<std::uint8_t>(time - begin);
+        if (first) flight.cycle[i] = static_cast<std::uint8_t>(time - begin);
         if (perfect) {
             ++hits;
             continue;
@@ -312,6 +345,7 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
     }
     if (lru) lines.give_time(used);
     statistics.l1.hits += hits;
+    statistics.l1_tags.busy += lines_asked;
     if (i < count) {  // the rest when there is room, or in the next window
         l1.position = i;
         flight.there = 0;
@@ -319,41 +353,57 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
         return time >= end ? end : retry_time(l1, time, end);
     }
     flight.arrival = std::max(flight.arrival, time);
-    if (k == 0) flight.there = first && shape.steady && lru && !perfect ? there : 0;
+    if (k == 0) {
+        flight.there = first && shape.steady && lru && !perfect ? there : 0;
+        flight.lines = lines_asked;
+    }
     return end_load(l1, begin, time + step);
 }
 
+/// L1Port::tags: when the tag stage and the data path are free for one more sector, of another line or not.
+Cycle TimedSm::port_ready(const L1& l1, bool new_line, Cycle time) const {
+    if (rules_.ideal.infinite_bandwidth) return time;
+    constexpr double rounding = 1e-6;
+    time = std::max(time, static_cast<Cycle>(l1.data_free + rounding));
+    return new_line ? std::max(time, l1.tags_free / rules_.timing.tags_per_cycle) : time;
+}
+void TimedSm::take_port(L1& l1, bool new_line, Cycle time) {
+    l1.data_free = std::max(l1.data_free, static_cast<double>(time)) + rules_.data_cost;
+    if (!new_line) return;
+    l1.tags_free = std::max(l1.tags_free, time * rules_.timing.tags_per_cycle) + 1;
+    statistics.l1_tags.busy += 1;
+}
+
+/// Any load: each group of lanes by itself, its sectors in descending order.
 Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
     const std::uint32_t flight_number = l1.queue.front();
     Flight& flight = flights_[flight_number];
+    const Visit& visit = flight.visit;
     const LoadShape& shape = *flight.shape;
-    const Timing& timing = rules_.timing;
-    const bool banks = timing.l1_port == L1Port::banks;
+    const bool banks = rules_.timing.l1_port == L1Port::banks;
     const Cycle step = rules_.ideal.infinite_bandwidth ? 0 : 1;
-    const std::uint32_t k = flight.at_port;
+    const std::uint32_t k = flight.at_port, bank_mask = rules_.timing.l1_banks - 1;
     const Cycle begin = time;
-    std::uint32_t used = 0, tags = 0;  // of this cycle: banks taken or sectors; lines
-    std::uint64_t before = never;      // the sector looked up last, in this request
-    if (l1.position > 0) {
-        const std::uint32_t last = l1.position - 1;
-        const std::uint32_t element = flight.visit[last / 2];
-        if (!(last % 2 == 1 && flight.visit.ends_group(last / 2)))
-            before = last % 2 == 0 ? shape.last_sector(element, k) : shape.first_sector(element, k);
-    }
-    for (; l1.position < 2 * flight.visit.count(); ++l1.position) {
-        const std::uint32_t element = flight.visit[l1.position / 2];
-        const bool first = l1.position % 2 == 1;
-        const std::uint64_t sector = first ? shape.first_sector(element, k) : shape.last_sector(element, k);
-        if (sector != before) {
-            const std::uint64_t line = sector >> rules_.line_of_sector;
+    std::uint32_t used = 0;        // banks taken in this cycle
+    std::uint64_t before = never;  // the lowest sector of this group so far
+    if (l1.sector > 0)
+        before = shape.last_sector(visit[l1.position], k) - l1.sector + 1;
+    else if (l1.position > 0 && !visit.ends_group(l1.position - 1))
+        before = shape.first_sector(visit[l1.position - 1], k);
+    for (; l1.position < visit.count(); ++l1.position, l1.sector = 0) {
+        const std::uint32_t place = visit[l1.position];
+        const std::uint64_t first = shape.first_sector(place, k), last = shape.last_sector(place, k);
+        for (; l1.sector <= last - first; ++l1.sector) {
+            const std::uint64_t sector = last - l1.sector, line = sector >> rules_.line_of_sector;
+            if (sector >= before) continue;
             const bool new_line = before == never || line != before >> rules_.line_of_sector;
-            const std::uint32_t bank = 1u << (sector & (timing.l1_banks - 1));
-            const bool full = banks ? (used & bank) != 0
-                                    : used == rules_.port_sectors || (new_line && tags == timing.tags_per_cycle);
-            if (full) {
+            const std::uint32_t bank = 1u << (sector & bank_mask);
+            if (!banks) {
+                time = port_ready(l1, new_line, time);
+            } else if (used & bank) {
                 time += step;
-                used = tags = 0;
+                used = 0;
             }
             if (time >= end) return end;
             flight.arrival = std::max(flight.arrival, time);
@@ -361,18 +411,18 @@ Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
                 ++statistics.l1.hits;
             else if (!look_up(l1, number, flight_number, ids_.id(line, flight.region),
                               static_cast<std::uint32_t>(sector & (rules_.sectors_per_line - 1)),
-                              flight.entries[l1.position / 2 * 2 + (line & 1)], time))
+                              flight.entries[2 * l1.position + (line & 1)], time))
                 return retry_time(l1, time, end);
-            used = banks ? used | bank : used + 1;
-            tags += new_line;
+            if (banks)
+                used |= bank;
+            else
+                take_port(l1, new_line, time);
             before = sector;
         }
-        if (first && flight.visit.ends_group(l1.position / 2)) {
+        if (visit.ends_group(l1.position) && l1.position + 1 < visit.count()) {
             before = never;
-            if (l1.position + 1 < 2 * flight.visit.count()) {  // the next request has a cycle of its own
-                time += step;
-                used = tags = 0;
-            }
+            time += step;  // the next group has a cycle of its own
+            used = 0;
         }
     }
     return end_load(l1, begin, time + step);

@@ -1,5 +1,6 @@
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace raycache::cachesim {
@@ -17,8 +18,14 @@ TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
     l3 += other.l3;
     dram_sectors += other.dram_sectors;
     visit_cycles += other.visit_cycles;
+    warps += other.warps;
+    warp_cycles += other.warp_cycles;
+    warp_slots = other.warp_slots ? other.warp_slots : warp_slots;
+    peak_l2_gb_s = std::max(peak_l2_gb_s, other.peak_l2_gb_s);
+    peak_dram_gb_s = std::max(peak_dram_gb_s, other.peak_dram_gb_s);
     for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
-                                &TimedStatistics::l2_slices, &TimedStatistics::dram}) {
+                                &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
+                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs}) {
         (this->*resource).busy += (other.*resource).busy;
         (this->*resource).copies = (other.*resource).copies;
     }

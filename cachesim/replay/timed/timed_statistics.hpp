@@ -33,7 +33,7 @@ struct TimedStatistics {
     std::uint64_t warp_accesses = 0, lane_accesses = 0;
     std::uint64_t instructions = 0;  ///< warp instructions: loads, and those between accesses
     std::uint64_t loads = 0;         ///< load instructions of warps
-    LevelAnswers l1, l2, l3;  ///< l3: nothing where there are two levels
+    LevelAnswers l1, l2, l3;         ///< l3: nothing where there are two levels
     std::uint64_t dram_sectors = 0;
 
     /// Busy cycles of each resource, summed over its copies, and how many copies there are: utilisation =
@@ -43,9 +43,25 @@ struct TimedStatistics {
         std::uint64_t copies = 1;
     };
     Resource issue, l1_port, crossbar, l2_slices, dram;
+    Resource l1_tags, l1_data;    ///< parts of what the port does (L1Port::tags)
+    Resource l1_mshrs, l2_mshrs;  ///< registers for misses; of L3 where there is one
 
-    std::uint64_t visit_cycles =
-        0;  ///< from the issue of a visit's first load to its last data, summed over warp accesses
+    /// From the issue of a visit's first load to its last data, summed over warp accesses.
+    std::uint64_t visit_cycles = 0;
+
+    /// Warps with accesses, the cycles that they were resident, summed, and how many can be resident at once. Where
+    /// warps fill the slots only once or not even that, cycles are those of the longest warps: no statement on
+    /// throughput.
+    std::uint64_t warps = 0, warp_cycles = 0, warp_slots = 0;
+
+    double peak_l2_gb_s = 0, peak_dram_gb_s = 0;  ///< of all slices of the last level, of all channels; 10^9 bytes
+
+    /// Of the slots for warps, the share that was taken on average.
+    double occupancy() const {
+        return cycles && warp_slots
+                   ? static_cast<double>(warp_cycles) / static_cast<double>(cycles) / static_cast<double>(warp_slots)
+                   : 0;
+    }
 
     /// Launches one after the other on the same GPU.
     TimedStatistics& operator+=(const TimedStatistics&);

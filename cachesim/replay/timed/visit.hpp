@@ -61,13 +61,18 @@ struct LoadShape {
     /// Moreover no element straddles lines, and all begin with a sector: loads of a visit take the port equally long.
     bool steady = false;
 
-    /// First and last sector that load k of this element reads.
-    std::uint64_t first_sector(std::uint32_t element, std::uint32_t k) const {
-        return (base + element * stride + std::uint64_t{k} * load_bytes) >> sector_shift;
+    /// First and last sector that load k reads of an element, given as Visit has it.
+    std::uint64_t first_sector(std::uint32_t place, std::uint32_t k) const {
+        return (address(place) + std::uint64_t{k} * load_bytes) >> sector_shift;
     }
-    std::uint64_t last_sector(std::uint32_t element, std::uint32_t k) const {
+    std::uint64_t last_sector(std::uint32_t place, std::uint32_t k) const {
         const std::uint32_t bytes = k + 1 == loads ? last_bytes : load_bytes;
-        return (base + element * stride + std::uint64_t{k} * load_bytes + bytes - 1) >> sector_shift;
+        return (address(place) + std::uint64_t{k} * load_bytes + bytes - 1) >> sector_shift;
+    }
+
+private:
+    std::uint64_t address(std::uint32_t place) const {
+        return apart ? base + (std::uint64_t{place} - first_piece) * load_bytes : base + place * stride;
     }
 };
 
