@@ -70,6 +70,13 @@ LineIds::LineIds(const std::vector<traces::Region>& regions, std::uint32_t line_
     }
 }
 
+std::uint64_t LineIds::line(std::uint32_t id) const {
+    if (!dense_) return touched_[id];
+    const auto after =
+        std::upper_bound(runs_.begin(), runs_.end(), id, [](std::uint32_t i, const Run& run) { return i < run.first; });
+    return id + std::prev(after)->offset;
+}
+
 std::uint32_t LineIds::number(std::uint64_t line) {
     const auto [at, is_new] = numbers_.try_emplace(line, static_cast<std::uint32_t>(touched_.size()));
     if (is_new) {

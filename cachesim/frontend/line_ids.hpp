@@ -41,6 +41,9 @@ public:
         return dense_ ? id + offsets_[region] : touched_[id];
     }
 
+    /// Of any region; slower.
+    std::uint64_t line(std::uint32_t id) const;
+
     /// Ids are below this, which is 2^32 - 1 at most.
     std::uint64_t bound() const { return bound_; }
     /// The highest line of all regions.

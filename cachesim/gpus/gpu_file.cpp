@@ -30,6 +30,7 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "dependent_chains",
                                        "accesses_in_flight",
                                        "load_queue",
+                                       "operand_collectors",
                                        "answers_per_cycle",
                                        "l1_port",
                                        "l1_banks",
@@ -52,7 +53,15 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "l2_bytes_per_cycle",
                                        "l3_bytes_per_cycle",
                                        "dram_channels",
-                                       "dram_gb_s"};
+                                       "dram_gb_s",
+                                       "dram_bank_bits",
+                                       "dram_row_bit",
+                                       "dram_mhz",
+                                       "dram_rcd",
+                                       "dram_rp",
+                                       "dram_ras",
+                                       "dram_rc",
+                                       "dram_rrd"};
 
 constexpr Choice<SetIndex> set_indices[] = {{"modulo", SetIndex::modulo},
                                             {"xor_fold", SetIndex::xor_fold},
@@ -120,6 +129,7 @@ Timing read_timing(TomlReader::Section section) {
     t.dependent_chains = section.number_or("dependent_chains", t.dependent_chains);
     t.accesses_in_flight = section.number_or("accesses_in_flight", t.accesses_in_flight);
     t.load_queue = section.number_or("load_queue", t.load_queue);
+    t.operand_collectors = section.number_or("operand_collectors", t.operand_collectors, true);
     t.answers_per_cycle = section.number_or("answers_per_cycle", t.answers_per_cycle, true);
     t.l1_port = section.choice_or("l1_port", l1_ports, t.l1_port);
     t.l1_banks = section.number_or("l1_banks", t.l1_banks);
@@ -143,6 +153,14 @@ Timing read_timing(TomlReader::Section section) {
     t.l3_bytes_per_cycle = section.positive_or("l3_bytes_per_cycle", t.l3_bytes_per_cycle);
     t.dram_channels = section.number<std::uint32_t>("dram_channels");
     t.dram_gb_s = section.positive("dram_gb_s");
+    t.dram_bank_bits = section.numbers_or_none<std::uint32_t>("dram_bank_bits");
+    t.dram_row_bit = section.number_or("dram_row_bit", t.dram_row_bit, true);
+    t.dram_mhz = section.positive_or("dram_mhz", t.dram_mhz);
+    t.dram_rcd = section.number_or("dram_rcd", t.dram_rcd, true);
+    t.dram_rp = section.number_or("dram_rp", t.dram_rp, true);
+    t.dram_ras = section.number_or("dram_ras", t.dram_ras, true);
+    t.dram_rc = section.number_or("dram_rc", t.dram_rc, true);
+    t.dram_rrd = section.number_or("dram_rrd", t.dram_rrd, true);
     return t;
 }
 

@@ -119,6 +119,31 @@ std::optional<GpuProblem> find_problem(const FrontEnd& front_end) {
     return std::nullopt;
 }
 
+/// Open rows of DRAM.
+std::optional<GpuProblem> find_row_problem(const Timing& t) {
+    const bool rows = !t.dram_bank_bits.empty();
+    if (t.dram_bank_bits.size() > 10)
+        return GpuProblem{"timing.dram_bank_bits",
+                          fmt::format("expected at most 10 address bits, found {}", t.dram_bank_bits.size())};
+    for (const std::uint32_t bit : t.dram_bank_bits)
+        if (auto p = not_in("timing.dram_bank_bits", bit, 0, 63)) return p;
+    if (auto p = not_in("timing.dram_row_bit", t.dram_row_bit, 0, 63)) return p;
+    for (const auto& [key, cycles] : {std::pair{"timing.dram_rcd", t.dram_rcd}, std::pair{"timing.dram_rp", t.dram_rp},
+                                      std::pair{"timing.dram_ras", t.dram_ras}, std::pair{"timing.dram_rc", t.dram_rc},
+                                      std::pair{"timing.dram_rrd", t.dram_rrd}}) {
+        if (auto p = not_in(key, cycles, 0, 100'000)) return p;
+        if (cycles && !rows)
+            return GpuProblem{key,
+                              "expected with the bits of a bank only; give dram_bank_bits, dram_row_bit and "
+                              "dram_mhz, too"};
+    }
+    if (rows != (t.dram_mhz > 0))
+        return GpuProblem{"timing.dram_mhz", "expected together with dram_bank_bits, found one of both"};
+    if (rows && (t.dram_mhz < 1 || t.dram_mhz > 1e5))
+        return GpuProblem{"timing.dram_mhz", fmt::format("expected 1 to 100000 MHz, found {}", t.dram_mhz)};
+    return std::nullopt;
+}
+
 std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
     const std::uint32_t sector = gpu.l1().sector_bytes;
     // Slower, one sector would take longer than all that is worth waiting for.
@@ -138,7 +163,13 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
                           fmt::format("expected at least {} bytes a cycle of each of {} channels, found {}; give more "
                                       "GB/s or fewer channels",
                                       slowest, t.dram_channels, rate)};
+    if (auto p = find_row_problem(t)) return p;
     if (auto p = not_in("timing.schedulers", t.schedulers, 1, 64)) return p;
+    if (auto p = not_in("timing.operand_collectors", t.operand_collectors, 0, 32)) return p;
+    if (t.operand_collectors > 0 && t.l1_latency < 4)
+        return GpuProblem{"timing.l1_latency", fmt::format("expected at least the 4 cycles from issue to the port "
+                                                           "with operand_collectors, found {}",
+                                                           t.l1_latency)};
     if (auto p = not_in("timing.instruction_interval", t.instruction_interval, 1, 1000)) return p;
     if (auto p = not_in("timing.accesses_in_flight", t.accesses_in_flight, 1, 64)) return p;
     for (const auto& [key, count] :

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace raycache::cachesim {
 
@@ -49,8 +50,11 @@ struct Timing {
     /// Visits of a warp that may be under way at once. Traversal needs what one visit brings for the next: 1.
     std::uint32_t accesses_in_flight = 1;
     std::uint32_t load_queue = 4;  ///< loads of a scheduler that may wait for the port of L1
-    std::uint32_t answers_per_cycle =
-        0;  ///< look-ups whose sector came from below that an SM can answer; 0: any number
+    /// Collectors of a scheduler, which its loads and other instructions share (GPGPU-Sim). 0: none; loads wait as
+    /// load_queue says, and hold up nothing else.
+    std::uint32_t operand_collectors = 0;
+    /// Look-ups whose sector came from below that an SM can answer; 0: any number.
+    std::uint32_t answers_per_cycle = 0;
 
     L1Port l1_port = L1Port::tags;
     std::uint32_t l1_banks = 4;
@@ -68,6 +72,18 @@ struct Timing {
     double l3_bytes_per_cycle = 32;
     std::uint32_t dram_channels = 1;
     double dram_gb_s = 0;  ///< of all channels together, 10^9 bytes per second
+
+    /// Open rows: the address bits that number the banks of a channel, and the lowest bit of the row. No bits: a read
+    /// takes as long whatever is open. With bits dram_latency is that of an open row; those below are cycles of
+    /// dram_mhz.
+    std::vector<std::uint32_t> dram_bank_bits;
+    std::uint32_t dram_row_bit = 0;
+    double dram_mhz = 0;
+    std::uint32_t dram_rcd = 0;  ///< from opening a row to reading it
+    std::uint32_t dram_rp = 0;   ///< from closing a row to opening another
+    std::uint32_t dram_ras = 0;  ///< from opening a row to closing it
+    std::uint32_t dram_rc = 0;   ///< from opening a row to opening another of the bank
+    std::uint32_t dram_rrd = 0;  ///< from opening a row to opening another of the channel
 
     /// L2 or L3: Gpu::levels[number].
     LevelTiming level(std::size_t number) const {

@@ -51,14 +51,9 @@ public:
         return next;
     }
 
-    /// No packet reaches the output before that time.
-    void block_output(std::size_t output, Cycle until) {
-        output_free_[output] = std::max(output_free_[output], static_cast<double>(until));
-    }
-
     /// Moves every packet that comes to the head of its queue before `end`, in order of time, and calls
-    /// arrived(packet, cycle) for each. Packets added later must not be ready before `end`, and a run begins where the
-    /// one before ended.
+    /// arrived(packet, time) for each, in parts of a cycle. Packets added later must not be ready before `end`, and a
+    /// run begins where the one before ended.
     template <class Arrived>
     void run(Cycle begin, Cycle end, Arrived&& arrived) {
         if (packets_ == 0) return;
@@ -92,7 +87,7 @@ private:
             --packets_;
             output_free_[output] = granted + cost_;
             input_free_[input] = granted;
-            arrived(packet, static_cast<Cycle>(std::ceil(granted)));
+            arrived(packet, granted);
             if (queue.empty() || queue.front().output != output) break;
             if (static_cast<double>(queue.front().ready) > output_free_[output] || output_free_[output] >= limit) break;
             granted = output_free_[output];

@@ -83,7 +83,7 @@ private:
     using Later = std::pair<Cycle, std::uint32_t>;
 
     Cycle base_ = 0, time_ = never;
-    std::array<std::uint16_t, turn> first_{};     ///< flight of the lowest number, of each place
+    std::array<std::uint16_t, turn> first_{};      ///< flight of the lowest number, of each place
     std::array<std::uint64_t, turn / 64> some_{};  ///< bit: whether there is one
     std::vector<std::uint16_t> next_;              ///< of each flight, another at its place
     std::priority_queue<Later, std::vector<Later>, std::greater<>> later_;

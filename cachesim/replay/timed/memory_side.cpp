@@ -12,6 +12,19 @@ double cycles_per_sector(double bytes_per_cycle, std::uint32_t sector_bytes, boo
     return infinite ? 0 : sector_bytes / bytes_per_cycle;
 }
 
+/// What a far partition adds.
+Cycle far_extra(const TimedRules& rules) {
+    if (rules.ideal.no_added_latency || rules.three_levels()) return 0;
+    return rules.timing.l2_far_latency - rules.timing.l2_latency;
+}
+
+/// Of a read beyond the last level. The latency of DRAM is an average over near and far partitions.
+Cycle dram_extra(const TimedRules& rules, Cycle level_latency) {
+    if (rules.ideal.no_added_latency) return 0;
+    const Cycle partitions = rules.timing.l2_partitions, extra = rules.timing.dram_latency - level_latency;
+    return extra - std::min(extra, far_extra(rules) * (partitions - 1) / partitions);
+}
+
 }  // namespace
 
 MemorySide::MemorySide(const TimedRules& rules)
@@ -22,27 +35,24 @@ MemorySide::MemorySide(const TimedRules& rules)
                         rules.gpu.l1().sector_bytes),
       by_inputs_(rules.timing.crossbar_queues == CrossbarQueues::inputs),
       level_extra_(rules.ideal.no_added_latency ? 0 : timing_.latency - rules.timing.l1_latency),
-      dram_extra_(rules.ideal.no_added_latency ? 0 : rules.timing.dram_latency - timing_.latency),
-      far_extra_(rules.ideal.no_added_latency || rules.three_levels() ? 0
-                                                                      : rules.timing.l2_far_latency - timing_.latency),
+      far_extra_(far_extra(rules)),
       window_(std::max<Cycle>(1, level_extra_)),
       crossbar_cost_(cycles_per_sector(rules.timing.crossbar_bytes_per_cycle, rules.gpu.l1().sector_bytes,
                                        rules.ideal.infinite_bandwidth)),
       slice_cost_(
           cycles_per_sector(timing_.bytes_per_cycle, rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
-      dram_cost_(
+      dram_(
+          rules.timing,
           cycles_per_sector(rules.timing.dram_gb_s * 1e9 / (rules.timing.clock_mhz * 1e6) / rules.timing.dram_channels,
-                            rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth)),
-      channel_(rules.timing.dram_channels),
+                            rules.gpu.l1().sector_bytes, rules.ideal.infinite_bandwidth),
+          dram_extra(rules, timing_.latency)),
       to_slices_(by_inputs_ ? rules.gpu.sms : slice_count_, slice_count_, slice_cost_, window_),
       to_sms_(by_inputs_ ? slice_count_ : rules.gpu.sms, rules.gpu.sms, crossbar_cost_, window_),
-      sent_(rules.gpu.sms) {
+      sent_(rules.gpu.sms),
+      slice_free_(slice_count_) {
     CacheGeometry slice = rules.gpu.levels.back();
     slice.slices = 1;
     for (std::uint32_t i = 0; i < slice_count_; ++i) slices_.emplace_back(slice, i, timing_.mshrs);
-    // The latency of DRAM is an average over near and far partitions.
-    const Cycle partitions = rules.timing.l2_partitions;
-    dram_extra_ -= std::min(dram_extra_, far_extra_ * (partitions - 1) / partitions);
 }
 
 void MemorySide::request(const MissRequest& miss) {
@@ -56,10 +66,14 @@ void MemorySide::request(const MissRequest& miss) {
 }
 
 void MemorySide::run_requests(Cycle begin, Cycle end) {
-    to_slices_.run(begin, end, [this](const Packet& packet, Cycle time) { serve(packet, time); });
+    to_slices_.run(begin, end, [this](const Packet& packet, double arrived) { serve(packet, arrived); });
 }
 
-void MemorySide::serve(const Packet& packet, Cycle time) {
+void MemorySide::serve(const Packet& packet, double arrived) {
+    double& free = slice_free_[packet.output];
+    const double start = std::max(arrived, free);
+    free = start + slice_cost_;
+    const auto time = static_cast<Cycle>(std::ceil(start));
     const Cycle arrival = look_up(packet, time);
     Cycle ready = std::max(arrival, time) + level_extra_;
     if (far_extra_ != 0) {
@@ -88,11 +102,18 @@ Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
     if (const std::uint32_t pending = slice.find_pending(packet.id, packet.sector, entry);
         pending != TimedCache::none) {
         MissRegisters::Register& r = registers[pending];
-        if (entry != TimedCache::none) lines.use(entry);
-        ++answers_.merges;
-        // A register that merges no more holds up the slice until the data are there.
-        if (++r.merged >= timing_.mshr_merges) to_slices_.block_output(packet.output, r.arrival);
-        return r.arrival;
+        if (r.merged < timing_.mshr_merges) {
+            if (entry != TimedCache::none) lines.use(entry);
+            ++r.merged;
+            ++answers_.merges;
+            return r.arrival;
+        }
+        time = r.arrival;
+        hold_up(packet.output, time);
+        slice.drain(time);
+        lines.use(lines.find(packet.id));
+        ++answers_.hits;
+        return time;
     }
     const auto wait = [&] {  // until a register is free
         time = std::max(time + 1, slice.next_arrival() == never ? 0 : slice.next_arrival());
@@ -101,7 +122,7 @@ Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
     };
     if (registers.full()) {
         wait();
-        to_slices_.block_output(packet.output, time);
+        hold_up(packet.output, time);
     }
     if (entry != TimedCache::none) {
         ++answers_.sector_misses;
@@ -126,7 +147,7 @@ Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
 }
 
 std::size_t MemorySide::channel_of(const Packet& packet) const {
-    const auto channels = static_cast<std::uint32_t>(channel_.size());
+    const auto channels = static_cast<std::uint32_t>(dram_.channels());
     if (slice_count_ % channels == 0) return packet.output / (slice_count_ / channels);
     // The set tells lines of a slice apart; its neighbours go to other channels.
     if (channels % slice_count_ == 0)
@@ -136,10 +157,8 @@ std::size_t MemorySide::channel_of(const Packet& packet) const {
 
 Cycle MemorySide::read_dram(const Packet& packet, Cycle time) {
     ++dram_sectors_;
-    double& free = channel_[channel_of(packet)];
-    const double start = std::max(static_cast<double>(time), free);
-    free = start + dram_cost_;
-    return static_cast<Cycle>(std::ceil(start)) + dram_extra_;
+    const std::uint64_t line = dram_.has_rows() ? rules_.ids.line(packet.id) : 0;
+    return dram_.read(channel_of(packet), line * rules_.gpu.l1().line_bytes, time);
 }
 
 }  // namespace raycache::cachesim

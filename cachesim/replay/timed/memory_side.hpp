@@ -4,18 +4,21 @@
 // Requests cross from SMs to slices, replies from slices to SMs (cachesim/replay/timed/crossbar.hpp). The slice looks a
 // request up; data of a hit are ready to go back after the level's latency less that of L1, those of a miss after a
 // DRAM channel was free and the latency of DRAM less that of the level more; those of a far partition after what that
-// adds. A slice whose registers for misses are all taken, or merge no more, takes no request until one is free. Slice s
-// has the channels from s * channels / slices on, those below (s + 1) * channels / slices or at least one, if one
-// number divides the other; else lines are dealt out among all channels.
+// adds. A slice whose registers for misses are all taken looks up no more until one is free; one whose request can
+// merge no more does not until the data are there, and then finds them. Slice s has the channels from s * channels /
+// slices on, those below (s + 1) * channels / slices or at least one, if one number divides the other; else lines are
+// dealt out among all channels.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/replay/timed/crossbar.hpp"
 #include "cachesim/replay/timed/cycle.hpp"
+#include "cachesim/replay/timed/dram.hpp"
 #include "cachesim/replay/timed/timed_cache.hpp"
 #include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
@@ -53,8 +56,8 @@ public:
     /// Call before the SMs run them.
     template <class Deliver>
     void run_replies(Cycle begin, Cycle end, Deliver&& deliver) {
-        to_sms_.run(begin, end, [&](Reply reply, Cycle arrived) {
-            reply.ready = arrived;
+        to_sms_.run(begin, end, [&](Reply reply, double arrived) {
+            reply.ready = static_cast<Cycle>(std::ceil(arrived));
             deliver(reply);
         });
     }
@@ -70,7 +73,7 @@ public:
     std::uint64_t dram_sectors() const { return dram_sectors_; }
     /// Cycles that registers for misses were taken, of all slices together.
     Cycle waiting() const { return waiting_; }
-    double dram_cycles_per_sector() const { return dram_cost_; }
+    double dram_cycles_per_sector() const { return dram_.cost(); }
     double slice_cycles_per_sector() const { return slice_cost_; }
     double crossbar_cycles_per_sector() const { return crossbar_cost_; }
 
@@ -84,9 +87,12 @@ private:
         std::uint8_t sector = 0, l1 = 0;
     };
 
-    void serve(const Packet&, Cycle);
+    void serve(const Packet&, double arrived);
     Cycle look_up(const Packet&, Cycle);
     Cycle read_dram(const Packet&, Cycle);
+    void hold_up(std::uint32_t slice, Cycle until) {
+        slice_free_[slice] = std::max(slice_free_[slice], static_cast<double>(until) + slice_cost_);
+    }
     std::size_t channel_of(const Packet&) const;
 
     const TimedRules& rules_;
@@ -94,13 +100,14 @@ private:
     std::uint32_t slice_count_, sectors_per_fill_;
     bool by_inputs_;  ///< CrossbarQueues::inputs
     std::vector<TimedCache> slices_;
-    Cycle level_extra_, dram_extra_, far_extra_;  ///< latencies beyond that of the level above
+    Cycle level_extra_, far_extra_;  ///< latencies beyond that of the level above
     Cycle window_;
-    double crossbar_cost_, slice_cost_, dram_cost_;  ///< cycles per sector
-    std::vector<double> channel_;                    ///< when each is free
+    double crossbar_cost_, slice_cost_;  ///< cycles per sector
+    Dram dram_;
     Crossbar<Packet> to_slices_;
     Crossbar<Reply> to_sms_;
-    std::vector<double> sent_;  ///< when the port of each SM is free for its next request
+    std::vector<double> sent_;        ///< when the port of each SM is free for its next request
+    std::vector<double> slice_free_;  ///< when each slice looks up its next request
     LevelAnswers answers_;
     std::uint64_t dram_sectors_ = 0;
     Cycle waiting_ = 0;

@@ -1,5 +1,5 @@
-// The tags of one sectored set-associative cache in time: which sectors of which lines are there, and which are on their
-// way. A line with a sector on its way is never evicted.
+// The tags of one sectored set-associative cache in time: which sectors of which lines are there, and which are on
+// their way. A line with a sector on its way is never evicted.
 //
 // Evicts the least recently used of the other lines, or the one that came first (fifo), by the time noted in each line;
 // under other policies the line that VictimOrder names, or the next way after it whose line can go.
@@ -20,8 +20,8 @@ public:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
 
     struct Line {
-        std::uint32_t id = none;  ///< LineIds; `none`: no line
-        std::uint32_t used = 0;   ///< when it was last used, or came (fifo)
+        std::uint32_t id = none;                 ///< LineIds; `none`: no line
+        std::uint32_t used = 0;                  ///< when it was last used, or came (fifo)
         std::uint32_t present = 0, pending = 0;  ///< bit s: sector s is there, is on its way
     };
 

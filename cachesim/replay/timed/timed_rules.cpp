@@ -26,9 +26,10 @@ std::uint32_t whole(double number) {
 
 }  // namespace
 
-TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions, const LineIds& ids,
+TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions, const LineIds& line_ids,
                        const Idealised& idealised)
     : gpu(g),
+      ids(line_ids),
       timing(*g.timing),
       ideal(idealised),
       sectors_per_line(g.l1().line_bytes / g.l1().sector_bytes),

@@ -1,6 +1,7 @@
 // What all SMs of a timed replay share and none changes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,11 +23,21 @@ struct Idealised {
 };
 
 struct TimedRules {
-    TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds&, const Idealised&);
+    /// `ids` number the lines of the regions and must outlive this object.
+    TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds& ids, const Idealised&);
 
     bool three_levels() const { return gpu.levels.size() == 3; }
+    /// Whether instructions go one by one through collectors. Where nothing is ever taken there is nothing to wait for.
+    bool collectors() const { return timing.operand_collectors > 0 && !ideal.infinite_bandwidth; }
+    /// Of one visit.
+    std::uint32_t most_loads() const {
+        std::uint32_t most = 1;
+        for (const LoadShape& shape : shapes) most = std::max(most, shape.loads);
+        return most;
+    }
 
     Gpu gpu;
+    const LineIds& ids;
     Timing timing;
     Idealised ideal;
     std::vector<LineMap> maps;                ///< of each level

@@ -14,6 +14,8 @@ TimedSm::TimedSm(const TimedRules& rules, LineIds& ids, std::uint16_t number)
       warps_(std::size_t{rules.cta_slots} * rules.gpu.warps_per_cta),
       flights_(warps_.size() * rules.timing.accesses_in_flight),
       per_warp_(rules.timing.accesses_in_flight),
+      data_per_flight_(rules.collectors() ? rules.most_loads() : 1),
+      data_(flights_.size() * data_per_flight_),
       unfinished_(rules.cta_slots),
       schedulers_(rules.timing.schedulers),
       events_(flights_.size()) {
@@ -28,6 +30,8 @@ TimedSm::TimedSm(const TimedRules& rules, LineIds& ids, std::uint16_t number)
         l1s_.push_back({TimedCache(rules.gpu.l1(), number * rules.gpu.l1_per_sm + i, rules.timing.l1_mshrs)});
     if (rules.three_levels())
         private_.emplace(PrivateLevel{TimedCache(rules.gpu.levels[1], number, rules.timing.l2_mshrs)});
+    for (std::uint32_t i = 0; i < data_.size(); ++i) data_[i].flight = i / data_per_flight_;
+    if (rules.collectors()) flow_.emplace(rules.timing, flights_.size());
 }
 
 void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle from) {
@@ -51,23 +55,23 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
         ++unfinished_[cta_slot];
         for (std::uint32_t f = slot * per_warp_; f < (slot + 1) * per_warp_; ++f) {
             flights_[f].computing = true;  // as if it came from the instructions of a visit
+            if (flow_) flow_->visits[f] = {};
             events_.push(from, f);
         }
     }
 }
 
-void TimedSm::begin_visit(std::uint32_t number, Cycle time) {
-    Warp& warp = warp_of(number);
-    std::uint32_t starts = 0;  // of rays
+/// Instructions before the warp's next access, for the rays that begin there.
+std::uint32_t TimedSm::shading(Warp& warp) const {
+    std::uint32_t starts = 0;
     for (; warp.next != warp.end && !warp.next->is_access(); ++warp.next) ++starts;
-    if (starts > 0 && rules_.timing.shading_instructions > 0) {
-        events_.push(run_instructions(number, time, starts * rules_.timing.shading_instructions, 0), number);
-        return;
-    }
-    if (warp.next == warp.end) {
-        end_flight(number, time);
-        return;
-    }
+    return starts * rules_.timing.shading_instructions;
+}
+
+/// The flight takes the warp's next access, which stands before no ray that begins; false if there is none.
+bool TimedSm::begin_visit(std::uint32_t number) {
+    Warp& warp = warp_of(number);
+    if (warp.next == warp.end) return false;
     const traces::Record& record = *warp.next;
     if (warp.left == 0) warp.left = record.mask;
     std::uint32_t mask = first_vector(warp.left, rules_.gpu.simd_width);
@@ -88,11 +92,28 @@ void TimedSm::begin_visit(std::uint32_t number, Cycle time) {
     flight.instructions = rules_.instructions[record.region];
     flight.visit.begin(*flight.shape, mask, warp.elements);
     warp.elements += lanes;
-    flight.issued = flight.at_port = flight.unresolved = 0;
-    flight.arrival = 0;
+    flight.issued = flight.at_port = flight.there = 0;
     flight.first_issue = never;
     ++statistics.warp_accesses;
     statistics.lane_accesses += lanes;
+    return true;
+}
+
+/// The flight's instructions are done.
+void TimedSm::make_ready(std::uint32_t number, Cycle time) {
+    if (const std::uint32_t count = shading(warp_of(number))) {
+        events_.push(run_instructions(number, time, count, 0), number);
+        return;
+    }
+    if (!begin_visit(number)) {
+        end_flight(number, time);
+        return;
+    }
+    Data& data = data_[number];
+    data.arrival = 0;
+    data.unresolved = 0;
+    data.asked = false;
+    const Flight& flight = flights_[number];
     schedulers_[flight.scheduler].ready |= std::uint64_t{1} << flight.bit;
     note(flight.scheduler);
 }
@@ -135,6 +156,7 @@ void TimedSm::compute(std::uint32_t number, Cycle time) {
 
 /// Before this cycle nothing happens here unless a reply arrives.
 Cycle TimedSm::next_time() const {
+    if (flow_ && !flow_->idle()) return now_;
     if (can_issue_ || (private_ && !private_->queue.empty())) return now_;
     Cycle next = events_.time();
     for (const L1& l1 : l1s_)
@@ -142,16 +164,16 @@ Cycle TimedSm::next_time() const {
     return next;
 }
 
-unsigned TimedSm::pick(const Scheduler& scheduler) const {
+/// Of those that are ready (bits), the one whose turn it is.
+unsigned TimedSm::pick(const Scheduler& scheduler, std::uint64_t ready) const {
     if (rules_.gpu.scheduler == cachesim::Scheduler::loose_round_robin) {
-        const std::uint64_t later =
-            scheduler.last == 63 ? 0 : scheduler.ready & (~std::uint64_t{0} << (scheduler.last + 1));
-        return static_cast<unsigned>(std::countr_zero(later ? later : scheduler.ready));
+        const std::uint64_t later = scheduler.last == 63 ? 0 : ready & (~std::uint64_t{0} << (scheduler.last + 1));
+        return static_cast<unsigned>(std::countr_zero(later ? later : ready));
     }
-    if (scheduler.ready >> scheduler.last & 1) return scheduler.last;
+    if (ready >> scheduler.last & 1) return scheduler.last;
     const auto age = [&](unsigned bit) { return warps_[scheduler.flight_of[bit] / per_warp_].age; };
-    unsigned oldest = static_cast<unsigned>(std::countr_zero(scheduler.ready));
-    for (std::uint64_t left = scheduler.ready; left; left &= left - 1) {
+    unsigned oldest = static_cast<unsigned>(std::countr_zero(ready));
+    for (std::uint64_t left = ready; left; left &= left - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(left));
         if (age(bit) < age(oldest)) oldest = bit;
     }
@@ -160,32 +182,50 @@ unsigned TimedSm::pick(const Scheduler& scheduler) const {
 
 void TimedSm::issue(unsigned number, Cycle time) {
     Scheduler& scheduler = schedulers_[number];
-    const unsigned bit = pick(scheduler);
+    const unsigned bit = pick(scheduler, scheduler.ready);
     const std::uint32_t chosen = scheduler.flight_of[bit];
     Flight& flight = flights_[chosen];
     scheduler.last = bit;
     flight.first_issue = std::min(flight.first_issue, time);
-    if (++flight.issued == flight.shape->loads) scheduler.ready &= ~(std::uint64_t{1} << bit);
+    const std::uint32_t load = flight.issued++;
+    if (flight.issued == flight.shape->loads) scheduler.ready &= ~(std::uint64_t{1} << bit);
     ++scheduler.queued;
     note(number);
     scheduler.free = std::max(scheduler.free, time) + 1;
     ++statistics.loads;
-    l1s_[l1s_.size() == 1 ? 0 : chosen / per_warp_ % l1s_.size()].queue.push(chosen);
+    l1s_[l1s_.size() == 1 ? 0 : chosen / per_warp_ % l1s_.size()].queue.push({chosen, load, chosen});
 }
 
-void TimedSm::visit_done(std::uint32_t number) {
-    Flight& flight = flights_[number];
-    flight.computing = false;
-    events_.push(flight.arrival + rules_.timing.l1_latency, number);
+/// All sectors have been looked up, and when the last arrives is known.
+void TimedSm::data_known(std::uint32_t number) {
+    const Data& data = data_[number];
+    if (!flow_) {
+        flights_[number].computing = false;
+        events_.push(data.arrival + rules_.timing.l1_latency, number);
+        return;
+    }
+    InstructionFlow::Visit& visit = flow_->visits[data.flight];
+    visit.latest = std::max(visit.latest, data.arrival);
+    if (--visit.unknown == 0)
+        statistics.visit_cycles += visit.latest + rules_.timing.l1_latency - flights_[data.flight].first_issue;
+    if (!visit.waits) return;
+    const Cycle time = ready_time(data.flight);
+    if (time == never) return;
+    visit.waits = false;
+    events_.push(std::max(time, now_), data.flight);
 }
 
 void TimedSm::run(Cycle end) {
+    if (flow_) {
+        run_flow(end);
+        return;
+    }
     while (now_ < end) {
         while (events_.time() <= now_) {
             const Cycle time = events_.time();
             const std::uint32_t flight = events_.pop();
             if (flights_[flight].computing)
-                begin_visit(flight, time);
+                make_ready(flight, time);
             else
                 compute(flight, time);
         }

@@ -3,7 +3,7 @@
 // A warp that is ready issues the loads of its next visit, one per scheduler and cycle. Loads wait in order for the
 // port of their L1; each takes as many cycles there as Timing::l1_port says and looks up its sectors meanwhile. When
 // the last sector of the visit is there, l1_latency later the warp issues the instructions of that visit, and is ready
-// again.
+// again. With Timing::operand_collectors each instruction goes its own way (instruction_flow.hpp).
 #pragma once
 
 #include <array>
@@ -16,6 +16,7 @@
 
 #include "cachesim/replay/multiprocessor.hpp"
 #include "cachesim/replay/timed/event_wheel.hpp"
+#include "cachesim/replay/timed/instruction_flow.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
 #include "cachesim/replay/timed/ring.hpp"
 #include "cachesim/replay/timed/timed_cache.hpp"
@@ -75,11 +76,9 @@ private:
         const LoadShape* shape = nullptr;
         std::uint32_t region = 0;
         std::uint32_t instructions = 0;
-        std::uint32_t issued = 0;      ///< loads of the visit
-        std::uint32_t at_port = 0;     ///< loads of the visit that have passed the port
-        std::uint32_t unresolved = 0;  ///< sectors whose arrival is not known
+        std::uint32_t issued = 0;   ///< loads of the visit
+        std::uint32_t at_port = 0;  ///< loads of the visit that have passed the port
         bool computing = false;
-        Cycle arrival = 0;  ///< of the latest sector so far
         Cycle first_issue = 0;
         Visit visit;
         /// What the first load found, and when (LoadShape::steady): bit i: all sectors of element i were there, and
@@ -89,10 +88,23 @@ private:
         /// By element of the visit and line of the element, modulo 2: where the L1 held it when it was last looked up.
         std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
     };
+    /// Data that a flight waits for: of all loads of its visit, or of one.
+    struct Data {
+        Cycle arrival = 0;             ///< of the latest sector so far
+        std::uint32_t unresolved = 0;  ///< sectors whose arrival is not known
+        std::uint32_t flight = 0;
+        bool asked = false;  ///< the L1 has looked up all sectors
+    };
+    /// A load on its way through the port.
+    struct Load {
+        std::uint32_t flight = 0;
+        std::uint32_t number = 0;  ///< of the visit
+        std::uint32_t data = 0;    ///< of data_
+    };
     /// One L1 with its port.
     struct L1 {
         TimedCache cache;
-        Ring<std::uint32_t> queue{};  ///< flights whose loads wait, in order of issue
+        Ring<Load> queue{};  ///< loads that wait, in order of issue
         Cycle port_free = 0;
         std::uint32_t position = 0;  ///< of the load at the front: the element to go on with
         std::uint32_t sector = 0;    ///< and how many of its sectors are done (serve_any())
@@ -113,7 +125,7 @@ private:
         Ring<Request> queue{};
         double free = 0;
     };
-    /// Who waits for the arrival of a sector to be known: a flight, or a register of an L1.
+    /// Who waits for the arrival of a sector to be known: data_, or a register of an L1.
     struct Waiter {
         std::uint32_t who, next;
         std::uint8_t l1;
@@ -136,13 +148,26 @@ private:
         can_issue_ = can ? can_issue_ | bit : can_issue_ & ~bit;
     }
 
-    void begin_visit(std::uint32_t flight, Cycle);
+    std::uint32_t shading(Warp&) const;
+    bool begin_visit(std::uint32_t flight);
+    void make_ready(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);
     Cycle run_instructions(std::uint32_t flight, Cycle, std::uint32_t count, std::uint32_t early);
     void compute(std::uint32_t flight, Cycle);
     void issue(unsigned scheduler, Cycle);
-    unsigned pick(const Scheduler&) const;
-    void visit_done(std::uint32_t flight);
+    unsigned pick(const Scheduler&, std::uint64_t ready) const;
+    void data_known(std::uint32_t number);
+
+    // Timing::operand_collectors
+    void run_flow(Cycle end);
+    void open_visit(std::uint32_t flight, Cycle);
+    void wake(std::uint32_t flight, Cycle);
+    void advance(std::uint32_t flight, Cycle);
+    Cycle ready_time(std::uint32_t flight) const;
+    bool run_units(Cycle);
+    bool feed_ports(Cycle, Cycle end);
+    bool issue_one(unsigned scheduler, Cycle);
+    Cycle next_in_flow(Cycle end) const;
 
     Cycle serve_port(std::uint8_t number, Cycle, Cycle end);
     template <L1Port port>
@@ -150,10 +175,10 @@ private:
     Cycle serve_any(std::uint8_t number, Cycle, Cycle end);
     Cycle end_load(L1&, Cycle begin, Cycle end);
     Cycle serve_later(std::uint8_t number, Cycle, Cycle end);
-    bool look_up(L1&, std::uint8_t number, std::uint32_t flight, std::uint32_t id, std::uint32_t sector,
-                 std::uint32_t& known, Cycle);
-    bool miss(L1&, std::uint8_t number, std::uint32_t flight, std::uint32_t sector, std::uint32_t id,
-              std::uint32_t& entry, Cycle);
+    bool look_up(L1&, std::uint8_t number, const Load&, std::uint32_t id, std::uint32_t sector, std::uint32_t& known,
+                 Cycle);
+    bool miss(L1&, std::uint8_t number, const Load&, std::uint32_t sector, std::uint32_t id, std::uint32_t& entry,
+              Cycle);
     Cycle retry_time(L1&, Cycle now, Cycle end) const;
     Cycle port_ready(const L1&, bool new_line, Cycle) const;
     void take_port(L1&, bool new_line, Cycle);
@@ -168,6 +193,8 @@ private:
     std::vector<Warp> warps_;                ///< by slot
     std::vector<Flight> flights_;            ///< by slot * per_warp_ + number
     std::uint32_t per_warp_;                 ///< flights of a warp
+    std::uint32_t data_per_flight_;          ///< 1, or one for each load of a visit
+    std::vector<Data> data_;                 ///< by flight * data_per_flight_ + load
     std::vector<std::uint32_t> unfinished_;  ///< warps of each CTA slot
     std::vector<Scheduler> schedulers_;
     std::uint64_t can_issue_ = 0;  ///< bit s: scheduler s has a ready flight, and room for its load
@@ -175,7 +202,8 @@ private:
     std::optional<PrivateLevel> private_;
     std::vector<Waiter> waiters_;
     std::uint32_t free_waiter_ = none;
-    EventWheel events_;  ///< flights whose data are there, and flights that begin a visit
+    EventWheel events_;                    ///< flights whose data are there, and flights that begin a visit
+    std::optional<InstructionFlow> flow_;  ///< with operand collectors
     Cycle now_ = 0;
     Cycle answer_free_ = 0;
     Cycle last_end_ = 0;

@@ -47,10 +47,10 @@ void TimedSm::arrive_in_l1(std::uint8_t number, std::uint32_t register_number, C
         waiters_[waiter].next = free_waiter_;
         free_waiter_ = waiter;
         waiter = w.next;
-        Flight& flight = flights_[w.who];
-        flight.arrival = std::max(flight.arrival, answer_free_);
+        Data& data = data_[w.who];
+        data.arrival = std::max(data.arrival, answer_free_);
         if (rules_.timing.answers_per_cycle) ++answer_free_;
-        if (--flight.unresolved == 0 && flight.at_port == flight.shape->loads) visit_done(w.who);
+        if (--data.unresolved == 0 && data.asked) data_known(w.who);
     }
     cache.registers()[register_number].waiters = none;
 }
@@ -121,9 +121,9 @@ void TimedSm::serve_private(Cycle now) {
 }
 
 /// What the L1 does not have: false if it has no room for another miss. `entry`: of the line, or none.
-bool TimedSm::miss(L1& l1, std::uint8_t number, std::uint32_t flight_number, std::uint32_t sector, std::uint32_t id,
+bool TimedSm::miss(L1& l1, std::uint8_t number, const Load& load, std::uint32_t sector, std::uint32_t id,
                    std::uint32_t& entry, Cycle time) {
-    Flight& flight = flights_[flight_number];
+    Data& data = data_[load.data];
     LevelAnswers& answers = statistics.l1;
     SectorCache& lines = l1.cache.lines();
     MissRegisters& registers = l1.cache.registers();
@@ -134,23 +134,23 @@ bool TimedSm::miss(L1& l1, std::uint8_t number, std::uint32_t flight_number, std
         ++r.merged;
         ++answers.merges;
         if (r.arrival != never) {
-            flight.arrival = std::max(flight.arrival, r.arrival);
+            data.arrival = std::max(data.arrival, r.arrival);
         } else {
-            wait(r.waiters, flight_number, number);
-            ++flight.unresolved;
+            wait(r.waiters, load.data, number);
+            ++data.unresolved;
         }
         return true;
     }
     if (registers.full()) return false;
-    const std::uint64_t line = ids_.line(id, flight.region);
+    const std::uint64_t line = ids_.line(id, flights_[load.flight].region);
     const bool line_there = entry != none;
     const std::uint64_t set = line_there ? 0 : rules_.maps[0](line);
     const std::uint32_t sent = l1.cache.send_for(id, sector, set, entry, time);
     if (sent == none) return false;
     if (line_there) lines.use(entry);
     ++(line_there ? answers.sector_misses : answers.line_misses);
-    wait(registers[sent].waiters, flight_number, number);
-    ++flight.unresolved;
+    wait(registers[sent].waiters, load.data, number);
+    ++data.unresolved;
     const auto ask = [&](std::uint32_t register_number, std::uint32_t of_line) {
         const auto s = static_cast<std::uint8_t>(of_line);
         if (private_)
@@ -165,7 +165,7 @@ bool TimedSm::miss(L1& l1, std::uint8_t number, std::uint32_t flight_number, std
 }
 
 /// Looks up one sector of a line; false if the L1 has no room for another miss. `known`: where the line was last.
-bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight, std::uint32_t id, std::uint32_t sector,
+bool TimedSm::look_up(L1& l1, std::uint8_t number, const Load& load, std::uint32_t id, std::uint32_t sector,
                       std::uint32_t& known, Cycle time) {
     SectorCache& lines = l1.cache.lines();
     l1.cache.drain(time);
@@ -175,7 +175,7 @@ bool TimedSm::look_up(L1& l1, std::uint8_t number, std::uint32_t flight, std::ui
         lines.use(entry);
         ++statistics.l1.hits;
     } else {
-        done = miss(l1, number, flight, sector, id, entry, time);
+        done = miss(l1, number, load, sector, id, entry, time);
     }
     if (entry != none) known = entry;
     return done;
@@ -189,7 +189,7 @@ Cycle TimedSm::retry_time(L1& l1, Cycle now, Cycle end) const {
 /// Serves the load at the front of the queue from this cycle on; returns when the port is free again.
 Cycle TimedSm::serve_port(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
-    const Flight& flight = flights_[l1.queue.front()];
+    const Flight& flight = flights_[l1.queue.front().flight];
     const bool even = rules_.timing.l1_port == L1Port::banks || rules_.port_sectors != 0;
     if (!flight.shape->apart || !even) return serve_any(number, time, end);
     return rules_.timing.l1_port == L1Port::banks ? serve_apart<L1Port::banks>(number, time, end)
@@ -198,14 +198,18 @@ Cycle TimedSm::serve_port(std::uint8_t number, Cycle time, Cycle end) {
 
 /// The load has passed the port: `end` is when the next can begin.
 Cycle TimedSm::end_load(L1& l1, Cycle begin, Cycle end) {
-    const std::uint32_t number = l1.queue.front();
-    Flight& flight = flights_[number];
+    const Load load = l1.queue.front();
+    Flight& flight = flights_[load.flight];
     l1.position = l1.sector = 0;
     l1.queue.pop();
     statistics.l1_port.busy += static_cast<double>(end - begin);
-    --schedulers_[flight.scheduler].queued;
-    note(flight.scheduler);
-    if (++flight.at_port == flight.shape->loads && flight.unresolved == 0) visit_done(number);
+    if (!flow_) {
+        --schedulers_[flight.scheduler].queued;
+        note(flight.scheduler);
+    }
+    Data& data = data_[load.data];
+    data.asked = ++flight.at_port == flight.shape->loads || flow_;
+    if (data.asked && data.unresolved == 0) data_known(load.data);
     return end;
 }
 
@@ -213,12 +217,13 @@ Cycle TimedSm::end_load(L1& l1, Cycle begin, Cycle end) {
 /// since has been evicted. LoadShape::steady.
 Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
     L1& l1 = l1s_[number];
-    const std::uint32_t flight_number = l1.queue.front();
-    Flight& flight = flights_[flight_number];
+    const Load load = l1.queue.front();
+    Flight& flight = flights_[load.flight];
+    Data& data = data_[load.data];
     const LoadShape& shape = *flight.shape;
     SectorCache& lines = l1.cache.lines();
     SectorCache::Line* const line = lines.lines();
-    const std::uint32_t count = flight.visit.count(), k = flight.at_port;
+    const std::uint32_t count = flight.visit.count(), k = load.number;
     const Cycle step = rules_.ideal.infinite_bandwidth ? 0 : 1;
     const std::uint32_t first_use = lines.take_time(traces::warp_lanes) + 1;  // of element i: first_use + i
     const std::uint32_t in_visit = ~std::uint32_t{0} >> (traces::warp_lanes - count);
@@ -235,13 +240,12 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
         if (time < end) {
             const std::uint32_t sector = (flight.visit[i] + k) >> shape.sector_of_piece;
             const std::uint32_t id = shape.first_id + (sector >> rules_.line_of_sector);
-            done =
-                look_up(l1, number, flight_number, id, sector & (rules_.sectors_per_line - 1), flight.entries[i], time);
+            done = look_up(l1, number, load, id, sector & (rules_.sectors_per_line - 1), flight.entries[i], time);
         }
         if (!done) {
             l1.position = i;
             statistics.l1.hits += std::popcount(flight.there & ((std::uint32_t{1} << i) - 1));
-            flight.arrival = std::max(flight.arrival, std::min(time, end - 1));
+            data.arrival = std::max(data.arrival, std::min(time, end - 1));
             return time < end ? retry_time(l1, time, end) : end;
         }
         next = i + 1;
@@ -251,7 +255,7 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
     statistics.l1_tags.busy += flight.lines;
     statistics.l1.hits += std::popcount(flight.there);
     const Cycle last = begin + flight.cycle[count - 1] * step;
-    flight.arrival = std::max(flight.arrival, last);
+    data.arrival = std::max(data.arrival, last);
     return end_load(l1, begin, last + step);
 }
 
@@ -259,10 +263,11 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
 template <L1Port port>
 Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
-    const std::uint32_t flight_number = l1.queue.front();
-    Flight& flight = flights_[flight_number];
+    const Load load = l1.queue.front();
+    Flight& flight = flights_[load.flight];
+    Data& data = data_[load.data];
     const LoadShape& shape = *flight.shape;
-    const std::uint32_t k = flight.at_port;
+    const std::uint32_t k = load.number;
     if (k > 0 && flight.there && l1.position == 0 && time + flight.cycle[flight.visit.count() - 1] < end &&
         l1.cache.lines().newest_evicted() <= flight.found_since)
         return serve_later(number, time, end);
@@ -337,7 +342,7 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
             there |= std::uint32_t{(line[entry].present >> in_line & needed) == needed} << i;
         } else {
             if (lru) lines.give_time(used);
-            done = miss(l1, number, flight_number, in_line, id, entry, time);
+            done = miss(l1, number, load, in_line, id, entry, time);
             if (lru) used = lines.take_time(traces::warp_lanes);
             if (entry != none) known = entry;
             if (!done) break;
@@ -349,10 +354,10 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
     if (i < count) {  // the rest when there is room, or in the next window
         l1.position = i;
         flight.there = 0;
-        flight.arrival = std::max(flight.arrival, std::min(time, end - 1));
+        data.arrival = std::max(data.arrival, std::min(time, end - 1));
         return time >= end ? end : retry_time(l1, time, end);
     }
-    flight.arrival = std::max(flight.arrival, time);
+    data.arrival = std::max(data.arrival, time);
     if (k == 0) {
         flight.there = first && shape.steady && lru && !perfect ? there : 0;
         flight.lines = lines_asked;
@@ -377,13 +382,14 @@ void TimedSm::take_port(L1& l1, bool new_line, Cycle time) {
 /// Any load: each group of lanes by itself, its sectors in descending order.
 Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
-    const std::uint32_t flight_number = l1.queue.front();
-    Flight& flight = flights_[flight_number];
+    const Load load = l1.queue.front();
+    Flight& flight = flights_[load.flight];
+    Data& data = data_[load.data];
     const Visit& visit = flight.visit;
     const LoadShape& shape = *flight.shape;
     const bool banks = rules_.timing.l1_port == L1Port::banks;
     const Cycle step = rules_.ideal.infinite_bandwidth ? 0 : 1;
-    const std::uint32_t k = flight.at_port, bank_mask = rules_.timing.l1_banks - 1;
+    const std::uint32_t k = load.number, bank_mask = rules_.timing.l1_banks - 1;
     const Cycle begin = time;
     std::uint32_t used = 0;        // banks taken in this cycle
     std::uint64_t before = never;  // the lowest sector of this group so far
@@ -406,10 +412,10 @@ Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
                 used = 0;
             }
             if (time >= end) return end;
-            flight.arrival = std::max(flight.arrival, time);
+            data.arrival = std::max(data.arrival, time);
             if (rules_.ideal.perfect_l1)
                 ++statistics.l1.hits;
-            else if (!look_up(l1, number, flight_number, ids_.id(line, flight.region),
+            else if (!look_up(l1, number, load, ids_.id(line, flight.region),
                               static_cast<std::uint32_t>(sector & (rules_.sectors_per_line - 1)),
                               flight.entries[2 * l1.position + (line & 1)], time))
                 return retry_time(l1, time, end);
