@@ -183,8 +183,9 @@ std::uint32_t read_residency(TomlReader& file, TomlReader::Section& root, const 
                                      "registers or a smaller CTA",
                                      gpu.warps_per_cta, warps));
     }
-    if (!root.has("warps_per_sm") && by_registers) return by_registers;
-    return root.number<std::uint32_t>("warps_per_sm");
+    if (root.has("warps_per_sm") || !by_registers) return root.number<std::uint32_t>("warps_per_sm");
+    file.note("warps_per_sm", fmt::format("{}", by_registers), "computed: the CTAs that the registers of an SM hold");
+    return by_registers;
 }
 
 Gpu read(TomlReader& file) {

@@ -175,6 +175,11 @@ public:
         fail(line == lines_.end() ? 1 : line->second, key, message);
     }
 
+    /// A value that follows from others of the file.
+    void note(const std::string& key, const std::string& value, const std::string& source) {
+        values_.push_back({key, value, source});
+    }
+
     /// In the order in which they were read.
     const std::vector<GpuValue>& values() const { return values_; }
 

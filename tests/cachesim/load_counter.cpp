@@ -16,8 +16,8 @@ namespace {
 std::pair<std::uint64_t, std::uint64_t> count(const traces::Region& r, const FrontEnd& front_end, std::uint32_t mask,
                                               const std::vector<std::uint32_t>& elements, unsigned sectors = 0) {
     const LoadCounter loads({r}, front_end, LineShape(128, 32));
-    return {loads.loads(0), loads.requests_follow(0) ? loads.requests(0, sectors)
-                                                     : loads.requests(0, mask, elements.data())};
+    return {loads.loads(0),
+            loads.requests_follow(0) ? loads.requests(0, sectors) : loads.requests(0, mask, elements.data())};
 }
 
 using Count = std::pair<std::uint64_t, std::uint64_t>;

@@ -9,26 +9,11 @@ import subprocess
 import tempfile
 import unittest
 
-from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
+from support import GPU, GPU_FILE, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 RENDER = ["render", *SCENE, "--resolution", "128x96", "--spp", "1"]
 CAPTURE = ["capture", *SCENE, *LAUNCHES]
-GPU_FILE = """
-name = "tiny"
-description = "A GPU for tests"
-sms = { value = 2, source = "assumed" }
-warps_per_sm = { value = 4, source = "assumed" }
-warps_per_cta = { value = 4, source = "assumed" }
-l1_per_sm = { value = 1, source = "assumed" }
-""" + "".join(f"""
-[{level}]
-sets = {{ value = {sets}, source = "assumed" }}
-ways = {{ value = 4, source = "assumed" }}
-line_bytes = {{ value = 128, source = "assumed" }}
-sector_bytes = {{ value = 32, source = "assumed" }}
-index = {{ value = "modulo", source = "assumed" }}
-policy = {{ value = "lru", source = "assumed" }}
-""" for level, sets in (("l1", 16), ("l2", 64)))
+
 
 
 def files_of_at_most(size):

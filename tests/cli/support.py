@@ -14,6 +14,23 @@ SCENE = ["courtyard", "--detail", "50000"]
 PICTURE = ["--resolution", "64x48"]
 LAUNCHES = PICTURE + ["--trace-samples", "2"]
 GPU = ["--gpu", "gtx-980-ti"]
+# Two SMs, and no times.
+GPU_FILE = """
+name = "tiny"
+description = "A GPU for tests"
+sms = { value = 2, source = "assumed" }
+warps_per_sm = { value = 4, source = "assumed" }
+warps_per_cta = { value = 4, source = "assumed" }
+l1_per_sm = { value = 1, source = "assumed" }
+""" + "".join(f"""
+[{level}]
+sets = {{ value = {sets}, source = "assumed" }}
+ways = {{ value = 4, source = "assumed" }}
+line_bytes = {{ value = 128, source = "assumed" }}
+sector_bytes = {{ value = 32, source = "assumed" }}
+index = {{ value = "modulo", source = "assumed" }}
+policy = {{ value = "lru", source = "assumed" }}
+""" for level, sets in (("l1", 16), ("l2", 64)))
 
 
 class Result:

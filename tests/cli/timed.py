@@ -4,7 +4,7 @@ import os
 import struct
 import subprocess
 
-from support import RAYCACHE, SCENE, ProgramTest, main
+from support import GPU_FILE, RAYCACHE, SCENE, ProgramTest, main
 
 
 def rtwarp(records, magic=b"RTWARP01"):
@@ -50,16 +50,17 @@ class Timed(ProgramTest):
         self.assertLess(peaks[6, "--timed"], peaks[1, "--timed"] + 40, peaks)
         self.assertLess(peaks[6,], peaks[1,] + 40, peaks)
 
-    def test_every_gpu_preset_can_be_timed_but_a_cpu_says_what_it_lacks(self):
+    def test_every_preset_can_be_timed_and_one_without_times_says_what_it_lacks(self):
         trace = self.capture("trace.rct", "--bounces", "0")
         names = [gpu["name"] for gpu in self.succeeds("list", "gpus", "--details", "--json").json["gpus"]]
         self.assertGreaterEqual(len(names), 11)
         for name in names:
-            if name.startswith("xeon"):
-                self.refuses(1, "replay", trace, "--gpu", name, "--timed", mentions=["[timing]"])
-            else:
-                row = self.succeeds("replay", trace, "--gpu", name, "--timed", "--json").json["rows"][0]
-                self.assertGreater(row["cycles"], 0)
+            row = self.succeeds("replay", trace, "--gpu", name, "--timed", "--json").json["rows"][0]
+            self.assertGreater(row["cycles"], 0)
+            for level in ("l1", "l2", "l3"):
+                self.assertEqual(level in row, level != "l3" or name.startswith("xeon"), name)
+        self.path("untimed.toml").write_text(GPU_FILE)
+        self.refuses(1, "replay", trace, "--gpu", "./untimed.toml", "--timed", mentions=["[timing]"])
 
     def test_a_set_value_takes_the_place_of_the_presets(self):
         trace = self.capture("trace.rct")

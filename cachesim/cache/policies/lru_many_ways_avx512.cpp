@@ -25,9 +25,9 @@ struct alignas(64) Bucket {
 
 /// What one cache has beside its tags and states.
 struct Cache {
-    std::uint32_t now = 0;       ///< look-ups so far
-    std::uint32_t horizon = 0;   ///< lines last used before are in the queues of their sets
-    std::uint32_t span = 64;     ///< by how much the horizon moves
+    std::uint32_t now = 0;      ///< look-ups so far
+    std::uint32_t horizon = 0;  ///< lines last used before are in the queues of their sets
+    std::uint32_t span = 64;    ///< by how much the horizon moves
 };
 /// Lines of a set, and its queue: of the set's places, those from `begin` to `end`.
 struct Set {
@@ -173,8 +173,7 @@ private:
         std::uint32_t* const states = states_of(number);
         std::uint32_t slot = 0;
         do {
-            while (set.begin == set.end) [[unlikely]]
-                    move_horizon(number);
+            while (set.begin == set.end) [[unlikely]] move_horizon(number);
             slot = queue[set.begin++];
         } while (!is_queued(states[slot]));  // it was used after all
         std::uint32_t& tag = tags_of(number)[slot / lanes].words[slot % lanes];
@@ -250,8 +249,7 @@ private:
             if (states[slot] != never) used.push_back(slot);
         std::sort(used.begin(), used.end(), [&](std::uint32_t a, std::uint32_t b) { return states[a] < states[b]; });
         std::uint32_t time = 0;
-        for (const std::uint32_t slot : used)
-            states[slot] = time++ << time_shift | (states[slot] & sectors_mask);
+        for (const std::uint32_t slot : used) states[slot] = time++ << time_shift | (states[slot] & sectors_mask);
         const std::uint32_t first = number * sets_per_cache_;
         for (std::uint32_t s = first; s < first + sets_per_cache_; ++s) sets_[s].begin = sets_[s].end = 0;
         caches_[number].now = time;

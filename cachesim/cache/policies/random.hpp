@@ -17,13 +17,14 @@ namespace raycache::cachesim {
 
 class RandomOrder {
 public:
-    RandomOrder(std::uint64_t sets, std::uint64_t ways, std::uint64_t seed)
-        : ways_(ways), mixed_seed_(mix(seed)), evictions_(sets) {}
+    /// `first`: number of the first set.
+    RandomOrder(std::uint64_t sets, std::uint64_t ways, std::uint64_t seed, std::uint64_t first = 0)
+        : ways_(ways), mixed_seed_(mix(seed)), first_(first), evictions_(sets) {}
 
     void use(std::uint64_t /*set*/, std::uint64_t /*way*/) {}
 
     std::uint64_t victim(std::uint64_t set) {
-        const std::uint64_t number = mix(mix(mixed_seed_ ^ set) ^ evictions_[set]++);
+        const std::uint64_t number = mix(mix(mixed_seed_ ^ (first_ + set)) ^ evictions_[set]++);
         return static_cast<std::uint64_t>((Wide{number} * ways_) >> 64);
     }
 
@@ -38,7 +39,7 @@ private:
         return z ^ (z >> 31);
     }
 
-    std::uint64_t ways_, mixed_seed_;
+    std::uint64_t ways_, mixed_seed_, first_;
     std::vector<std::uint64_t> evictions_;  ///< by set, so far
 };
 

@@ -231,6 +231,9 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
     const auto use_up_to = [&](std::uint32_t i) {
         for (; next < i; ++next) line[flight.entries[next]].used = first_use + next;
     };
+    const auto line_of = [&](std::uint32_t i) {
+        return shape.first_id + ((flight.visit[i] + k) >> shape.sector_of_piece >> rules_.line_of_sector);
+    };
     for (std::uint32_t left = in_visit & ~flight.there; left; left &= left - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left));
         const Cycle time = begin + flight.cycle[i] * step;
@@ -239,11 +242,16 @@ Cycle TimedSm::serve_later(std::uint8_t number, Cycle begin, Cycle end) {
         bool done = false;
         if (time < end) {
             const std::uint32_t sector = (flight.visit[i] + k) >> shape.sector_of_piece;
-            const std::uint32_t id = shape.first_id + (sector >> rules_.line_of_sector);
-            done = look_up(l1, number, load, id, sector & (rules_.sectors_per_line - 1), flight.entries[i], time);
+            done =
+                look_up(l1, number, load, line_of(i), sector & (rules_.sectors_per_line - 1), flight.entries[i], time);
         }
         if (!done) {
             l1.position = i;
+            std::uint32_t before = none;
+            for (std::uint32_t e = 0; e < i && flight.lines > 0; ++e) {
+                statistics.l1_tags.busy += line_of(e) != before;
+                before = line_of(e);
+            }
             statistics.l1.hits += std::popcount(flight.there & ((std::uint32_t{1} << i) - 1));
             data.arrival = std::max(data.arrival, std::min(time, end - 1));
             return time < end ? retry_time(l1, time, end) : end;
@@ -345,7 +353,12 @@ Cycle TimedSm::serve_apart(std::uint8_t number, Cycle time, Cycle end) {
             done = miss(l1, number, load, in_line, id, entry, time);
             if (lru) used = lines.take_time(traces::warp_lanes);
             if (entry != none) known = entry;
-            if (!done) break;
+            if (!done) {
+                if constexpr (port == L1Port::tags)
+                    lines_asked -=
+                        i == 0 || id != first_id + ((pieces[i - 1] + k) >> sector_of_piece >> line_of_sector);
+                break;
+            }
         }
     }
     if (lru) lines.give_time(used);
