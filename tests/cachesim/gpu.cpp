@@ -8,6 +8,7 @@
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/gpus/presets.hpp"
+#include "cachesim/replay/launch_checks.hpp"
 #include "tests/folders.hpp"
 #include "traces/error.hpp"
 
@@ -220,11 +221,31 @@ TEST_CASE("impossible caches are refused with the line of the value at fault") {
                StartsWith("f.toml:17: l2.line_bytes: expected the line size of L1"));
 }
 
-TEST_CASE("a user's GPU file is read from a path") {
+TEST_CASE("a user's GPU file is read from a path, and errors found later name it") {
     const auto path = std::filesystem::temp_directory_path() / "raycache-test-gpu.toml";
     std::ofstream(path) << good;
-    CHECK(load_gpu(path.string()).name == "tiny");
+    const Gpu gpu = load_gpu(path.string());
     std::filesystem::remove(path);
+    CHECK(gpu.name == "tiny");
+    CHECK(gpu.file == path.string());
+    CHECK(is_gpu_file(path.string()));
+    CHECK_THROWS_WITH(checked_timed(gpu),
+                      Catch::StartsWith(path.string() + ": GPU \"tiny\": expected a table [timing]"));
+    CHECK(load_gpu("h100").file.empty());
+    CHECK_FALSE(is_gpu_file("h100"));
+    CHECK_THROWS_WITH(checked_timed(load_gpu("h100", {"warps_per_sm=1000"})),
+                      Catch::StartsWith("GPU \"h100 (warps_per_sm=1000)\": warps_per_sm: expected at most 64"));
+}
+
+TEST_CASE("the name of a GPU says what was changed, the last value of each key in the order of the keys") {
+    const auto name = [](const std::vector<std::string>& changes) { return parse_gpu(good, "f.toml", changes).name; };
+    CHECK(name({}) == "tiny");
+    CHECK(name({"warps_per_sm=8", "l1.ways=2"}) == "tiny (l1.ways=2, warps_per_sm=8)");
+    CHECK(name({"l1.ways=2", "warps_per_sm = 8"}) == "tiny (l1.ways=2, warps_per_sm=8)");
+    CHECK(name({"l1.ways=0x10", "l2.policy='fifo'"}) == "tiny (l1.ways=16, l2.policy=fifo)");
+    CHECK(name({"l2.policy=fifo", "l2.policy=lru"}) == "tiny (l2.policy=lru)");
+    CHECK(name({"name=mine", "sms=4"}) == "mine (sms=4)");
+    CHECK(name({"l1.index=parity", "l1.index_masks=[128, 0x100]"}) == "tiny (l1.index=parity, l1.index_masks=128 256)");
 }
 
 TEST_CASE("a [timing] that contradicts itself is refused with line and key") {
