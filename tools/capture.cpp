@@ -22,7 +22,7 @@ void run(const Options& o) {
     const std::string adjusted = settings_warning(settings);
     if (!adjusted.empty()) warn(adjusted);
     const auto limit = o.threads.apply();
-    const auto scene = o.scene.prepare();
+    const auto scene = o.scene.prepare({o.output});
     const tracer::Capture capture(*scene, settings);
     ProgressBar bar("capture", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(),
                     "rays");

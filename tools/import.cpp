@@ -5,6 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/outputs.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/error.hpp"
 #include "traces/rtwarp/import.hpp"
@@ -18,6 +19,7 @@ struct Options {
 };
 
 void run(const Options& o) {
+    refuse_overwriting({o.input}, {o.output});
     if (traces::looks_like_rtwarp(o.input)) {
         if (o.fuse)
             throw UsageError("--fuse: expected an Accel-Sim trace, found an RTWARP01 trace, whose objects are whole");

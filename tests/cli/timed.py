@@ -4,7 +4,7 @@ import os
 import struct
 import subprocess
 
-from support import RAYCACHE, SCENE, ProgramTest, main
+from support import RAYCACHE, ROOT, SCENE, ProgramTest, main
 
 
 def rtwarp(records, magic=b"RTWARP01", nodes=0x7F5000000000):
@@ -71,6 +71,16 @@ class Timed(ProgramTest):
                                    (1, "l1.policy=newest", "with --set: l1.policy: expected one of: fifo, lru"),
                                    (2, "l1.policy='lru", "KEY=VALUE"), (1, "l1.allocate=never", "on_fill")):
             self.refuses(code, "replay", trace, "--gpu", "v100", "--set", change, mentions=[word])
+
+    def test_what_a_users_file_lacks_in_time_is_said_in_its_name(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
+        self.path("mine.toml").write_text(preset)
+        self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed")
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--warps-per-sm", "1024",
+                     mentions=["mine.toml: ", "(warps_per_sm=1024)", "warps_per_sm: expected at most 64"])
+        self.path("mine.toml").write_text(preset[:preset.index("[timing]")])
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", mentions=["mine.toml: ", "[timing]"])
 
     def test_options_that_exclude_each_other_are_refused(self):
         trace = self.capture("trace.rct", "--bounces", "0")
