@@ -7,7 +7,8 @@
 namespace raycache::tools {
 
 void GpuOptions::add_changes(CLI::App& app) {
-    app.add_option("--set", changes, "KEY=VALUE: another value for a key of every GPU file; may be repeated")
+    app.add_option("--set", changes,
+                   "KEY=VALUE: another value for a key of every GPU file, shown beside the GPU's name; may be repeated")
         ->allow_extra_args(false);
     app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's")
         ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{1024}));

@@ -50,7 +50,7 @@ void add_import(CLI::App& app) {
         "import", "Make a trace of an Accel-Sim (NVBit) trace's global loads, or of an RTWARP01 trace");
     command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz; or an RTWARP01 trace, plain or zstd")
         ->required();
-    command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
+    command->add_option("-o,--output", o->output, "trace to write (.rct), or - for stdout")->required();
     command->add_flag("--fuse", o->fuse, "one access for loads of a warp that read on, lane by lane: a split object");
     command->footer(
         "Examples:\n"

@@ -55,9 +55,10 @@ std::string sentence(const Explanation& e) {
         return static_cast<double>(c.dram_sectors) * e.sector_bytes / static_cast<double>(c.rays);
     };
     if (dram.mean == 1 && l2.mean == 1)
-        return fmt::format("There is no difference: {} reads as many DRAM bytes per ray as {}, {:.1f}, and as many "
-                           "L2-to-L1 bytes.",
-                           e.other.name, e.base.name, bytes(other));
+        return fmt::format(
+            "There is no difference: {} reads as many DRAM bytes per ray as {}, {:.1f}, and as many "
+            "L2-to-L1 bytes.",
+            e.other.name, e.base.name, bytes(other));
     std::string text = fmt::format("{} reads {} DRAM bytes per ray {} {} ({:.1f} against {:.1f}) and {} L2-to-L1 bytes",
                                    e.other.name, change(dram.mean), dram.mean == 1 ? "as" : "than", e.base.name,
                                    bytes(other), bytes(base), change(l2.mean));

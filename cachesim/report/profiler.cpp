@@ -99,8 +99,10 @@ std::string to_text(const ProfilerReport& profile) {
         "thread_inst_executed: active lanes per access.\n";
     if (report.has_wavefront())
         text +=
-            "dram__bytes is more than bytes read and written: what sorting rays moves is in it alone, since the trace "
-            "does not say\nwhich of it is read. It is under no other name.\n";
+            "Stores: L2 gets each distinct sector of an access once, not of each store instruction. dram__bytes also "
+            "holds what\nsorting rays moves, which the trace does not split into reads and writes; no other name "
+            "counts "
+            "it.\n";
     return text;
 }
 
