@@ -7,7 +7,7 @@ import os
 import pty
 import subprocess
 
-from support import GPU, LAUNCHES, PICTURE, RAYCACHE, SCENE, ProgramTest, main
+from support import GPU, LAUNCHES, PICTURE, RAYCACHE, ROOT, SCENE, ProgramTest, main
 
 COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU]
 
@@ -118,10 +118,12 @@ class Reports(ProgramTest):
         self.assertNotIn("(", self.succeeds(*COMPARE, "--strategy", "coherent", "--json").json["rows"][0]["gpu"])
 
     def test_a_gpu_without_timing_is_refused_before_the_scene_is_touched(self):
+        preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
+        self.path("untimed.toml").write_text(preset[:preset.index("[timing]")])
         for command in (["compare", "--scene", "missing.glb", "--timed"], ["sweep", "missing.glb"],
                         ["quality", "missing.glb"]):
             with self.subTest(command[0]):
-                self.refuses(1, *command, "--gpu", "xeon-8380", mentions=["xeon-8380", "[timing]"])
+                self.refuses(1, *command, "--gpu", "untimed.toml", mentions=["untimed.toml: ", "[timing]"])
 
     def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
         command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]

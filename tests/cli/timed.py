@@ -77,8 +77,8 @@ class Timed(ProgramTest):
         preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
         self.path("mine.toml").write_text(preset)
         self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed")
-        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--warps-per-sm", "1024",
-                     mentions=["mine.toml: ", "(warps_per_sm=1024)", "warps_per_sm: expected at most 64"])
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.accesses_in_flight=64",
+                     mentions=["mine.toml: ", "(timing.accesses_in_flight=64)", "expected at most 64 for each"])
         self.path("mine.toml").write_text(preset[:preset.index("[timing]")])
         self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", mentions=["mine.toml: ", "[timing]"])
 
