@@ -79,7 +79,9 @@ void run(const Options& o) {
         throw UsageError(fmt::format("--strategy with {} names; expected two: BASE,OTHER", o.strategies.size()));
     if (!o.heat_map.empty()) check_heat_map_name(o.heat_map);
     const FileNames outputs = heat_map_files(o.heat_map);
-    const cachesim::Gpu gpu = o.gpu.load(outputs).front();
+    const auto gpus = o.gpu.load(outputs);
+    const cachesim::Gpu& gpu = gpus.front();
+    if (gpu.timing && !o.counts_only) o.gpu.check_timed(gpus);
     refuse_overwriting(o.traces, outputs);
     const auto limit = o.threads.apply();
     if (o.traces.empty()) return explain_scene(o, gpu);

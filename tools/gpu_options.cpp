@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cachesim/replay/launch_checks.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tools {
 
@@ -25,10 +26,15 @@ std::vector<cachesim::Gpu> GpuOptions::load(const FileNames& outputs) const {
     return gpus;
 }
 
-std::vector<cachesim::Gpu> GpuOptions::load_timed(const FileNames& outputs) const {
-    std::vector<cachesim::Gpu> gpus = load(outputs);
-    for (const cachesim::Gpu& gpu : gpus) cachesim::checked_timed(gpu);
-    return gpus;
+void GpuOptions::check_timed(const std::vector<cachesim::Gpu>& gpus) const {
+    for (std::size_t i = 0; i < gpus.size(); ++i) {
+        try {
+            cachesim::checked_timed(gpus[i]);
+        } catch (const Error& e) {
+            if (!cachesim::is_gpu_file(names[i])) throw;
+            throw Error(fmt::format("{}: {}", names[i], e.what()));
+        }
+    }
 }
 
 }  // namespace raycache::tools

@@ -20,8 +20,8 @@ struct GpuOptions {
     /// The changes stand in their names. Throws as load_gpu() does, and UsageError if one of `outputs`, which the
     /// caller is going to write, is the file of a GPU.
     std::vector<cachesim::Gpu> load(const FileNames& outputs) const;
-    /// Likewise, and throws Error for a GPU that cannot be replayed in time.
-    std::vector<cachesim::Gpu> load_timed(const FileNames& outputs) const;
+    /// Throws Error for one of load() that cannot be replayed in time; it names the user's file.
+    void check_timed(const std::vector<cachesim::Gpu>&) const;
 };
 
 }  // namespace raycache::tools

@@ -45,7 +45,8 @@ std::string QualityOptions::baseline_of(const std::vector<std::string>& strategi
 
 QualityReport QualityOptions::measure(QualityRequest request, const FileNames& outputs) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
-    const auto gpus = gpu.load_timed(outputs);
+    const auto gpus = gpu.load(outputs);
+    gpu.check_timed(gpus);
     if (!gpus.empty()) request.gpu = gpus.front();
     request.repeats = repeats;
     check(request);

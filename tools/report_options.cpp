@@ -74,7 +74,8 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
 std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) const {
     check();
     refuse_overwriting(inputs, outputs());
-    std::vector<cachesim::Gpu> loaded = timed ? gpus.load_timed(outputs()) : gpus.load(outputs());
+    std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
+    if (timed) gpus.check_timed(loaded);
     for (const cachesim::Gpu& gpu : loaded)
         if (!counters.empty() && gpu.levels.size() != 2)
             throw UsageError(

@@ -63,9 +63,7 @@ bool is_gpu_file(const std::string& name_or_path) {
 
 Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes) {
     const GpuText text = find_text(name_or_path);
-    Gpu gpu = parse_gpu(text.toml, text.file, changes);
-    if (is_gpu_file(name_or_path)) gpu.file = name_or_path;
-    return gpu;
+    return parse_gpu(text.toml, text.file, changes);
 }
 
 std::vector<GpuValue> gpu_values(const std::string& name_or_path) {

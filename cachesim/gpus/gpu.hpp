@@ -73,7 +73,6 @@ struct FrontEnd {
 struct Gpu {
     std::string name;         ///< "gtx-980-ti"; with what was changed, "gtx-980-ti (l1.ways=64, sms=16)"
     std::string description;  ///< "GeForce GTX 980 Ti (GM200, Maxwell)"
-    std::string file;         ///< the user's, that errors are about; empty: a preset
     std::uint32_t sms = 0;
     std::uint32_t warps_per_sm = 0;  ///< resident at once; a multiple of the CTA size is not required
     std::uint32_t warps_per_cta = 8;

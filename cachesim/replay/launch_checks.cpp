@@ -38,16 +38,11 @@ RAYCACHE_AVX512 bool is_right_avx512(const traces::WarpTrace& warp, const std::v
     return wrong == 0 && element == end;
 }
 
-/// "GPU "gtx-980-ti"", after the user's file where it is from one.
-std::string name_of(const Gpu& gpu) {
-    return fmt::format("{}GPU \"{}\"", gpu.file.empty() ? "" : gpu.file + ": ", gpu.name);
-}
-
 }  // namespace
 
 const Gpu& checked(const Gpu& gpu) {
     if (const auto problem = find_problem(gpu))
-        throw Error(fmt::format("{}: {}: {}", name_of(gpu), problem->key, problem->message));
+        throw Error(fmt::format("GPU \"{}\": {}: {}", gpu.name, problem->key, problem->message));
     return gpu;
 }
 
@@ -71,14 +66,14 @@ const Gpu& checked_timed(const Gpu& gpu) {
     checked(gpu);
     if (!gpu.timing)
         throw Error(
-            fmt::format("{}: expected a table [timing] for a timed replay, found none; add one, or replay "
+            fmt::format("GPU \"{}\": expected a table [timing] for a timed replay, found none; add one, or replay "
                         "without time",
-                        name_of(gpu)));
+                        gpu.name));
     if (std::uint64_t{gpu.warps_per_sm} * gpu.timing->accesses_in_flight > 64 * gpu.timing->schedulers)
         throw Error(
-            fmt::format("{}: warps_per_sm: expected at most 64 for each of {} schedulers in a timed "
+            fmt::format("GPU \"{}\": warps_per_sm: expected at most 64 for each of {} schedulers in a timed "
                         "replay, found {}",
-                        name_of(gpu), gpu.timing->schedulers, gpu.warps_per_sm));
+                        gpu.name, gpu.timing->schedulers, gpu.warps_per_sm));
     return gpu;
 }
 

@@ -8,7 +8,6 @@
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/gpus/presets.hpp"
-#include "cachesim/replay/launch_checks.hpp"
 #include "tests/folders.hpp"
 #include "traces/error.hpp"
 
@@ -221,21 +220,13 @@ TEST_CASE("impossible caches are refused with the line of the value at fault") {
                StartsWith("f.toml:17: l2.line_bytes: expected the line size of L1"));
 }
 
-TEST_CASE("a user's GPU file is read from a path, and errors found later name it") {
+TEST_CASE("a user's GPU file is read from a path") {
     const auto path = std::filesystem::temp_directory_path() / "raycache-test-gpu.toml";
     std::ofstream(path) << good;
-    const Gpu gpu = load_gpu(path.string());
+    CHECK(load_gpu(path.string()).name == "tiny");
     std::filesystem::remove(path);
-    CHECK(gpu.name == "tiny");
-    CHECK(gpu.file == path.string());
     CHECK(is_gpu_file(path.string()));
-    CHECK_THROWS_WITH(checked_timed(gpu),
-                      Catch::StartsWith(path.string() + ": GPU \"tiny\": expected a table [timing]"));
-    CHECK(load_gpu("h100").file.empty());
     CHECK_FALSE(is_gpu_file("h100"));
-    CHECK_THROWS_WITH(checked_timed(load_gpu("h100", {"timing.accesses_in_flight=64"})),
-                      Catch::StartsWith("GPU \"h100 (timing.accesses_in_flight=64)\": warps_per_sm") &&
-                          Catch::Contains("expected at most 64 for each of"));
 }
 
 TEST_CASE("the name of a GPU says what was changed, the last value of each key in the order of the keys") {

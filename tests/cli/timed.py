@@ -79,6 +79,8 @@ class Timed(ProgramTest):
         self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed")
         self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.accesses_in_flight=64",
                      mentions=["mine.toml: ", "(timing.accesses_in_flight=64)", "expected at most 64 for each"])
+        self.refuses(1, "explain", "--scene", "missing.glb", "--gpu", "mine.toml", "--set",
+                     "timing.accesses_in_flight=64", mentions=["mine.toml: ", "expected at most 64 for each"])
         self.path("mine.toml").write_text(preset[:preset.index("[timing]")])
         self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", mentions=["mine.toml: ", "[timing]"])
 
