@@ -40,4 +40,19 @@ unsigned Canvas::text_width(const std::string& text, unsigned scale) {
     return static_cast<unsigned>(text.size()) * glyph_width * scale;
 }
 
+std::vector<std::string> Canvas::lines(const std::string& text, unsigned scale, unsigned width) {
+    const std::size_t most = std::max(1u, width / (glyph_width * scale));
+    std::vector<std::string> lines;
+    for (std::string rest = text;;) {
+        if (rest.size() <= most) {
+            lines.push_back(rest);
+            return lines;
+        }
+        const std::size_t space = rest.rfind(' ', most);
+        const bool between = space != std::string::npos && space > 0;
+        lines.push_back(rest.substr(0, between ? space : most));
+        rest.erase(0, between ? space + 1 : most);
+    }
+}
+
 }  // namespace raycache::tools

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/colour_map.hpp"
 #include "tracer/image.hpp"
@@ -20,6 +21,8 @@ public:
     void text(unsigned x, unsigned y, const std::string&, unsigned scale);
 
     static unsigned text_width(const std::string&, unsigned scale);
+    /// The text in lines of at most `width` pixels, broken between words, within a word only where it is longer.
+    static std::vector<std::string> lines(const std::string&, unsigned scale, unsigned width);
 
     const tracer::ScreenImage& image() const { return image_; }
 

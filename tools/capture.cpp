@@ -22,7 +22,7 @@ void run(const Options& o) {
     const std::string adjusted = settings_warning(settings);
     if (!adjusted.empty()) warn(adjusted);
     const auto limit = o.threads.apply();
-    const auto scene = o.scene.prepare();
+    const auto scene = o.scene.prepare({o.output});
     const tracer::Capture capture(*scene, settings);
     ProgressBar bar("capture", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(),
                     "rays");
@@ -35,7 +35,7 @@ void add_capture(CLI::App& app) {
     auto o = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("capture", "Trace a scene in warps and write every access to a trace file");
     o->scene.add(*command, true);
-    command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
+    command->add_option("-o,--output", o->output, "trace to write (.rct), or - for stdout")->required();
     command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
         ->capture_default_str();
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();

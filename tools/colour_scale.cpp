@@ -32,14 +32,16 @@ Scale symmetric_scale(const std::vector<double>& values) {
     std::vector<double> sizes;
     for (const double value : values) sizes.push_back(std::fabs(value));
     const double high = round_up(percentile(std::move(sizes), 0.99));
-    return {-high, high, [](double share) { return blue_white_red(2 * share - 1); }};
+    return {-high, high, [](double share) { return blue_white_red(2 * share - 1); }, false, false};
 }
 
 void ScaleBar::draw(Canvas& canvas, unsigned x, unsigned y, unsigned width, const Scale& scale,
                     const std::string& unit) {
     for (unsigned i = 0; i < width; ++i) canvas.fill(x + i, y, 1, height, scale.colour((i + 0.5) / width));
     canvas.outline(x, y, width, height, {0, 0, 0});
-    const std::string low = number(scale.low), middle = number((scale.low + scale.high) / 2), high = number(scale.high);
+    const std::string low = (scale.cut_low ? "<=" : "") + number(scale.low),
+                      middle = number((scale.low + scale.high) / 2),
+                      high = (scale.cut_high ? ">=" : "") + number(scale.high);
     const unsigned below = y + height + 4;
     canvas.text(x, below, low, text_scale);
     canvas.text(x + (width - Canvas::text_width(middle, text_scale)) / 2, below, middle, text_scale);

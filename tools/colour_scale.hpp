@@ -14,6 +14,7 @@ namespace raycache::tools {
 struct Scale {
     double low, high;
     std::function<Colour(double share)> colour;  ///< of 0 … 1 from low to high
+    bool cut_low = false, cut_high = false;      ///< whether values beyond an end have its colour
 
     Colour of(double value) const { return colour((value - low) / (high - low)); }
 };

@@ -7,6 +7,7 @@
 #include "tools/console.hpp"
 #include "tools/options.hpp"
 #include "tools/replay_job.hpp"
+#include "tools/report_options.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -34,7 +35,7 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
             }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
-    const auto scene = o.scene.prepare();
+    const auto scene = o.scene.prepare(o.report.outputs());
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     captures.reserve(settings.size());
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
@@ -47,7 +48,7 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
 void run(const Options& o) {
     if (o.traces.empty() == o.scene.source.empty())
         throw UsageError("nothing to compare; expected either trace files or --scene, not both");
-    const auto gpus = o.report.load_gpus();
+    const auto gpus = o.report.load_gpus(o.traces);
     const auto limit = o.threads.apply();
     if (o.traces.empty())
         compare_fused(o, gpus);

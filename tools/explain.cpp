@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/explain_job.hpp"
+#include "tools/gpu_options.hpp"
 #include "tools/heat_map.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/options.hpp"
@@ -21,22 +22,26 @@ struct Options {
     std::string sequence = "sobol";
     std::uint64_t spp = 64;
     SamplingOptions sampling;
-    ReportOptions gpus;
-    std::string heat_map;
-    bool counts_only = false;
+    GpuOptions gpu;
+    std::string by = "none", heat_map;
+    bool json = false, counts_only = false;
     ThreadOptions threads;
 };
 
-void explain_and_print(const Options& o, const std::vector<LaunchSource>& sources,
+std::string samples_text(std::size_t count) {
+    return count == 1 ? "1 sample index" : fmt::format("{} sample indices", count);
+}
+
+void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::vector<LaunchSource>& sources,
                        const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, names[i], "explain");
     ExplainRequest request;
     request.sources = {&sources[0], &sources[1]};
     request.names = {names[0], names[1]};
-    request.gpu = o.gpus.load_gpus().front();
-    request.by = o.gpus.by == "bounce" ? cachesim::GroupBy::bounce
-                 : o.gpus.by == "ray"  ? cachesim::GroupBy::ray
-                                       : cachesim::GroupBy::none;
+    request.gpu = gpu;
+    request.by = o.by == "bounce" ? cachesim::GroupBy::bounce
+                 : o.by == "ray"  ? cachesim::GroupBy::ray
+                                  : cachesim::GroupBy::none;
     request.timed = !o.counts_only;
     request.pixels = !o.heat_map.empty();
     const Explained done = explain(request);
@@ -44,13 +49,13 @@ void explain_and_print(const Options& o, const std::vector<LaunchSource>& source
     if (request.pixels)
         write_heat_maps(
             o.heat_map,
-            fmt::format("{}, N {}, {} sample indices, GPU {}", e.scene, e.spp, e.base.launches.size(), e.gpu),
-            make_heat_map(e.base.name, *sources[0].header, done.costs[0], e.sector_bytes),
-            make_heat_map(e.other.name, *sources[1].header, done.costs[1], e.sector_bytes));
-    print(o.gpus.json ? cachesim::to_json(e) : cachesim::to_text(e));
+            fmt::format("{}, N {}, {}, GPU {}", e.scene, e.spp, samples_text(e.base.launches.size()), e.gpu),
+            make_heat_map(e.base.name, *sources[0].header, done.costs[0], gpu),
+            make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu));
+    print(o.json ? cachesim::to_json(e) : cachesim::to_text(e));
 }
 
-void explain_scene(const Options& o) {
+void explain_scene(const Options& o, const cachesim::Gpu& gpu) {
     std::vector<tracer::CaptureSettings> settings;
     std::set<std::string> warnings;
     for (const std::string& strategy : o.strategies) {
@@ -59,10 +64,10 @@ void explain_scene(const Options& o) {
     }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
-    const auto scene = o.scene.prepare();
+    const auto scene = o.scene.prepare(heat_map_files(o.heat_map));
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    explain_and_print(o, sources_of(captures), o.strategies);
+    explain_and_print(o, gpu, sources_of(captures), o.strategies);
 }
 
 void run(const Options& o) {
@@ -73,11 +78,15 @@ void run(const Options& o) {
     if (o.strategies.size() != 2)
         throw UsageError(fmt::format("--strategy with {} names; expected two: BASE,OTHER", o.strategies.size()));
     if (!o.heat_map.empty()) check_heat_map_name(o.heat_map);
-    o.gpus.load_gpus();  // refuses before anything takes time
+    const FileNames outputs = heat_map_files(o.heat_map);
+    const auto gpus = o.gpu.load(outputs);
+    const cachesim::Gpu& gpu = gpus.front();
+    if (gpu.timing && !o.counts_only) o.gpu.check_timed(gpus);
+    refuse_overwriting(o.traces, outputs);
     const auto limit = o.threads.apply();
-    if (o.traces.empty()) return explain_scene(o);
+    if (o.traces.empty()) return explain_scene(o, gpu);
     const TraceFiles files(o.traces);
-    explain_and_print(o, files.sources, o.traces);
+    explain_and_print(o, gpu, files.sources, o.traces);
 }
 
 }  // namespace
@@ -87,19 +96,16 @@ void add_explain(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "explain", "Explain why one trace causes more cache traffic than another, factor by factor and miss by miss");
     command->add_option("TRACES", o->traces, "two trace files: BASE and OTHER");
-    command->add_option("--gpu", o->gpus.gpus, "GPU preset or FILE.toml (see 'raycache list gpus')")
+    command->add_option("--gpu", o->gpu.names, "GPU preset or FILE.toml (see 'raycache list gpus')")
         ->required()
         ->expected(1);
-    command->add_option("--set", o->gpus.changes, "KEY=VALUE: another value for a key of the GPU file; may be repeated")
-        ->allow_extra_args(false);
-    command->add_option("--warps-per-sm", o->gpus.warps_per_sm, "resident warps of an SM, instead of the preset's")
-        ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
+    o->gpu.add_changes(*command);
     command
-        ->add_option("--by", o->gpus.by,
+        ->add_option("--by", o->by,
                      "the factors also for each: none, bounce (path vertex), ray (camera, bounce, shadow)")
         ->check(CLI::IsMember({"none", "bounce", "ray"}))
         ->capture_default_str();
-    command->add_flag("--json", o->gpus.json, "print JSON");
+    command->add_flag("--json", o->json, "print JSON");
     command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
     command->add_option("--heatmap", o->heat_map,
                         "FILE.exr: DRAM bytes, L1 miss rate and active lanes of each pixel; FILE.png shows them");

@@ -4,12 +4,13 @@
 #include <CLI/CLI.hpp>
 
 #include "cachesim/export/sector_stream.hpp"
-#include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/export_accel_sim.hpp"
+#include "tools/gpu_options.hpp"
 #include "tools/launch_source.hpp"
+#include "tools/outputs.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/read_launch.hpp"
@@ -18,9 +19,9 @@ namespace raycache::tools {
 namespace {
 
 struct Options {
-    std::string trace, format, gpu, level = "l1", output;
-    std::optional<std::uint32_t> sm, l1;
-    std::uint32_t launch = 0;
+    std::string trace, format, level = "l1", output;
+    GpuOptions gpu;
+    std::optional<std::uint32_t> sm, l1, launch;
     traces::TracegSettings traceg;
 };
 
@@ -37,10 +38,21 @@ std::string format_names() {
     return names + ", accel-sim";
 }
 
-void check_launch(const Options& o, const traces::Header& header) {
-    if (o.launch >= header.launches.size())
-        throw UsageError(fmt::format("--launch {}; expected 0 to {}, the launches of {}", o.launch,
-                                     header.launches.size() - 1, o.trace));
+std::uint32_t choose_launch(const Options& o, const traces::Header& header) {
+    const std::size_t launches = header.launches.size();
+    const std::uint32_t launch = o.launch.value_or(0);
+    if (launch >= launches)
+        throw UsageError(
+            fmt::format("--launch {}; expected 0 to {}, the launches of {}", launch, launches - 1, o.trace));
+    return launch;
+}
+
+/// A file holds one launch. Says so where others were left out and none was asked for.
+void warn_of_others(const Options& o, const traces::Header& header) {
+    const std::size_t launches = header.launches.size();
+    if (o.launch || launches == 1) return;
+    warn(fmt::format("{}: only launch 0 of {} is exported, sample index {}; choose with --launch 0 to {}", o.trace,
+                     launches, header.launches.front(), launches - 1));
 }
 
 /// Which cache, or UsageError.
@@ -74,37 +86,42 @@ cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gp
 }
 
 void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
-    if (o.gpu.empty()) throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
-    const cachesim::Gpu gpu = cachesim::load_gpu(o.gpu);
+    if (o.gpu.names.empty())
+        throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
+    refuse_overwriting({o.trace}, {o.output});
+    const cachesim::Gpu gpu = o.gpu.load({o.output}).front();
     const auto choice = choose_cache(o, gpu, format);
     const traces::Reader reader(o.trace);
     const traces::Header& header = reader.header();
-    check_launch(o, header);
     refuse_wavefront(header, o.trace, "export");
+    const std::uint32_t launch = choose_launch(o, header);
 
     traces::OutputFile file(o.output);
     cachesim::SectorStream stream(choice, format, gpu.l1().sector_bytes,
                                   [&](std::string_view piece) { file.write(piece); });
-    cachesim::Replay replay(gpu, header.regions, header.launches[o.launch]);
+    cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
     replay.observe(stream);
     ProgressBar bar("export", header.warps_per_launch, "warps");
-    traces::read_launch(reader, o.launch, [&](traces::WarpTrace&& warp) {
+    traces::read_launch(reader, launch, [&](traces::WarpTrace&& warp) {
         replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
         bar.add(1, 1);
     });
     replay.finish();
     stream.flush();
     file.commit();
+    warn_of_others(o, header);
 }
 
 void export_instructions(const Options& o) {
-    if (!o.gpu.empty() || o.sm || o.l1 || o.level != "l1")
+    if (!o.gpu.names.empty() || !o.gpu.changes.empty() || o.gpu.warps_per_sm != 0 || o.sm || o.l1 || o.level != "l1")
         throw UsageError(
-            "--format accel-sim with --gpu, --level, --sm or --l1; expected none: it holds a whole launch");
+            "--format accel-sim with --gpu, --set, --warps-per-sm, --level, --sm or --l1; expected none: it holds a "
+            "whole launch");
+    refuse_overwriting({o.trace}, accel_sim_files(o.output));
     const traces::Reader reader(o.trace);
-    check_launch(o, reader.header());
     refuse_wavefront(reader.header(), o.trace, "export");
-    export_accel_sim(reader, o.launch, o.traceg, o.output);
+    export_accel_sim(reader, choose_launch(o, reader.header()), o.traceg, o.output);
+    warn_of_others(o, reader.header());
 }
 
 void run(const Options& o) {
@@ -125,11 +142,15 @@ void add_export(CLI::App& app) {
         ->add_option("--format", o->format,
                      "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv, or accel-sim (warp instructions)")
         ->required();
-    command->add_option("-o,--output", o->output, "file to write; accel-sim: FILE.traceg, FILE.traceg.xz, or a folder")
+    command
+        ->add_option("-o,--output", o->output,
+                     "file to write, or - for stdout; accel-sim: FILE.traceg, FILE.traceg.xz, -, or a folder")
         ->required();
-    command->add_option("--launch", o->launch, "which launch of the trace; each begins with empty caches")
-        ->capture_default_str();
-    command->add_option("--gpu", o->gpu, "GPU preset or FILE.toml (see 'raycache list gpus')");
+    command->add_option("--launch", o->launch,
+                        "which launch of the trace, from 0; each begins with empty caches. Default: the first, with a "
+                        "warning where there are more");
+    command->add_option("--gpu", o->gpu.names, "GPU preset or FILE.toml (see 'raycache list gpus')")->expected(1);
+    o->gpu.add_changes(*command);
     command->add_option("--level", o->level, "l1, l2 or l3: of one SM, or the last, which all SMs share")
         ->capture_default_str();
     command->add_option("--sm", o->sm, "the SM whose cache is meant, from 0");
@@ -149,6 +170,7 @@ void add_export(CLI::App& app) {
         "  raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv\n"
         "  raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din\n"
         "  raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64\n"
+        "  raycache export mj.rct --launch 1 --gpu h100 --set l1.ways=8 --sm 0 --format dinero -o - | less\n"
         "  raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace\n"
         "  raycache export mj.rct --format accel-sim -o mj.traceg.xz");
     command->callback([o] { run(*o); });

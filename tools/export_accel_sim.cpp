@@ -26,12 +26,26 @@ void write_kernel(const traces::Reader& reader, std::uint32_t launch, const trac
     file.commit();
 }
 
+constexpr const char *kernel_name = "kernel-1.traceg", *list_name = "kernelslist.g";
+
+/// Whether the output is the kernel itself, not a folder for it.
+bool is_kernel(const std::string& output) {
+    std::error_code error;
+    return output == "-" || output.ends_with(".traceg") || output.ends_with(".traceg.xz") ||
+           std::filesystem::is_other(output, error);
+}
+
 }  // namespace
+
+std::vector<std::string> accel_sim_files(const std::string& output) {
+    if (is_kernel(output)) return {output};
+    const std::filesystem::path folder = output;
+    return {(folder / kernel_name).string(), (folder / list_name).string()};
+}
 
 void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
                       const std::string& output) {
-    if (output.ends_with(".traceg") || output.ends_with(".traceg.xz"))
-        return write_kernel(reader, launch, settings, output);
+    if (is_kernel(output)) return write_kernel(reader, launch, settings, output);
     std::error_code error;
     const bool made = std::filesystem::create_directory(output, error);
     if (error || !std::filesystem::is_directory(output, error))
@@ -41,9 +55,9 @@ void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const 
             output));
     const std::filesystem::path folder = output;
     try {
-        write_kernel(reader, launch, settings, folder / "kernel-1.traceg");
-        traces::OutputFile list(folder / "kernelslist.g");
-        list.write("kernel-1.traceg\n");
+        write_kernel(reader, launch, settings, folder / kernel_name);
+        traces::OutputFile list(folder / list_name);
+        list.write(fmt::format("{}\n", kernel_name));
         list.commit();
     } catch (...) {
         if (made) std::filesystem::remove_all(folder, error);

@@ -48,20 +48,25 @@ cachesim::LanePixels lane_pixels(const traces::Header& header, const std::string
 }
 
 HeatMap make_heat_map(const std::string& name, const traces::Header& header, const cachesim::PixelCosts& costs,
-                      std::uint32_t sector_bytes) {
-    HeatMap map{name, header.provenance.width, header.provenance.height, {}, {}, {}};
+                      const cachesim::Gpu& gpu) {
+    HeatMap map{name, gpu.simd_width, header.provenance.width, header.provenance.height, {}, {}, {}};
     const double samples = static_cast<double>(samples_of(header));
     const auto quotient = [](double a, double b) {
         return b == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(a / b);
     };
     for (const cachesim::PixelCost& c : costs.pixels()) {
         const double sectors = static_cast<double>(c.dram_parts) / static_cast<double>(cachesim::PixelCosts::parts);
-        map.dram_bytes.push_back(c.accesses ? quotient(sectors * sector_bytes, samples)
+        map.dram_bytes.push_back(c.accesses ? quotient(sectors * gpu.l1().sector_bytes, samples)
                                             : std::numeric_limits<float>::quiet_NaN());
         map.l1_miss_rate.push_back(quotient(static_cast<double>(c.l2_parts), static_cast<double>(c.l1_parts)));
         map.active_lanes.push_back(quotient(static_cast<double>(c.lanes), static_cast<double>(c.accesses)));
     }
     return map;
+}
+
+std::vector<std::string> heat_map_files(const std::string& exr) {
+    if (exr.empty()) return {};
+    return {exr, exr.substr(0, exr.size() - 4) + ".png"};
 }
 
 void check_heat_map_name(const std::string& exr) {
@@ -76,8 +81,9 @@ void write_heat_maps(const std::string& exr, const std::string& title, const Hea
         channels.push_back({fmt::format("{}.L1 miss rate", layer), map->l1_miss_rate});
         channels.push_back({fmt::format("{}.active lanes", layer), map->active_lanes});
     }
-    tracer::write_channels(exr, base.width, base.height, channels);
-    tracer::write_screen_image(exr.substr(0, exr.size() - 4) + ".png", draw(title, base, other));
+    const auto files = heat_map_files(exr);
+    tracer::write_channels(files[0], base.width, base.height, channels);
+    tracer::write_screen_image(files[1], draw(title, base, other));
 }
 
 }  // namespace raycache::tools

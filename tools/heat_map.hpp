@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "cachesim/analysis/pixel_costs.hpp"
+#include "cachesim/gpus/gpu.hpp"
 #include "traces/header.hpp"
 
 namespace raycache::tools {
 
 /// Of one trace, by pixel, rows top to bottom. NaN where a pixel read nothing.
 struct HeatMap {
-    std::string name;  ///< of the trace, such as its strategy
+    std::string name;     ///< of the trace, such as its strategy
+    unsigned lanes = 32;  ///< of a warp access at most: the GPU's SIMD width
     std::uint32_t width = 0, height = 0;
     std::vector<float> dram_bytes;    ///< per sample of the pixel
     std::vector<float> l1_miss_rate;  ///< 0 … 1, of the sectors that the pixel's lanes asked for
@@ -24,7 +26,10 @@ cachesim::LanePixels lane_pixels(const traces::Header&, const std::string& name)
 
 /// `costs`: of all launches of the trace.
 HeatMap make_heat_map(const std::string& name, const traces::Header&, const cachesim::PixelCosts& costs,
-                      std::uint32_t sector_bytes);
+                      const cachesim::Gpu&);
+
+/// The files that write_heat_maps() writes; none for an empty name.
+std::vector<std::string> heat_map_files(const std::string& exr);
 
 /// Throws UsageError unless write_heat_maps() can write to a file of this name.
 void check_heat_map_name(const std::string& exr);

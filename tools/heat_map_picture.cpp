@@ -21,17 +21,21 @@ constexpr unsigned smallest_panel = 384, largest_panel = 640;  ///< pixels of a 
 constexpr std::uint32_t block = 8;  ///< pixels on a side of the squares over which differences are averaged
 
 struct Quantity {
-    const char *title, *unit, *difference;
+    std::string title, unit, difference;
+    const char* better;  ///< which colour of a difference is good for the caches
     std::vector<float> HeatMap::*values;
     double factor;  ///< from the map's unit to the shown one
     double lowest, highest;
 };
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr std::array<Quantity, 3> quantities{{
-    {"DRAM bytes", "bytes per pixel and sample", "bytes", &HeatMap::dram_bytes, 1, 0, unlimited},
-    {"L1 miss rate", "% of sectors asked for", "percentage points", &HeatMap::l1_miss_rate, 100, 0, 100},
-    {"active lanes", "lanes per warp access, of 32", "lanes", &HeatMap::active_lanes, 1, 1, 32},
-}};
+
+std::array<Quantity, 3> quantities_of(unsigned lanes) {
+    const char *less = "blue: less, better", *more = "red: more, better";
+    return {{{"DRAM bytes", "bytes per pixel and sample", "bytes", less, &HeatMap::dram_bytes, 1, 0, unlimited},
+             {"L1 miss rate", "% of sectors asked for", "percentage points", less, &HeatMap::l1_miss_rate, 100, 0, 100},
+             {"active lanes", fmt::format("lanes per warp access, of {}", lanes), "lanes", more, &HeatMap::active_lanes,
+              1, 1, static_cast<double>(lanes)}}};
+}
 
 /// A number by pixel; NaN where there is none.
 struct Grid {
@@ -71,6 +75,14 @@ Grid difference(const Grid& base, const Grid& other) {
     return grid;
 }
 
+Scale with_cuts(Scale scale, const std::vector<double>& values) {
+    for (const double value : values) {  // NaN is neither
+        scale.cut_low |= value < scale.low;
+        scale.cut_high |= value > scale.high;
+    }
+    return scale;
+}
+
 Scale common_scale(const Quantity& quantity, const Grid& base, const Grid& other) {
     std::vector<double> both = base.values;
     both.insert(both.end(), other.values.begin(), other.values.end());
@@ -83,7 +95,7 @@ Scale common_scale(const Quantity& quantity, const Grid& base, const Grid& other
         high = std::min(quantity.highest, std::ceil(high / 2) * 2);
     }
     if (!(high > low)) high = low + 1;
-    return {low, high, viridis};
+    return with_cuts({low, high, viridis, false, false}, both);
 }
 
 /// How many pixels of the picture a pixel of the map takes, or the other way round.
@@ -113,28 +125,57 @@ void draw_panel(Canvas& canvas, unsigned x, unsigned y, const Grid& grid, const 
 tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const HeatMap& other) {
     const Zoom zoom(base.width, base.height);
     const unsigned panel = std::max(zoom.panel_width, 400u);  // wide enough for its unit
-    const unsigned row_height = line + zoom.panel_height + margin, bar = bar_height + 2 * line + margin;
-    const unsigned heading = 3 * glyph_height + margin, top = margin + line + heading + 4;
-    Canvas canvas(margin + 3 * (panel + margin), top + 3 * row_height + 2 * bar);
-    canvas.text(margin, margin, title, text_scale);
+    const unsigned text_width = 3 * (panel + margin) - margin;
+    const auto broken = [&](const std::string& text) { return Canvas::lines(text, text_scale, text_width); };
+    const auto height = [](const std::vector<std::string>& lines) {
+        return static_cast<unsigned>(lines.size()) * line;
+    };
 
-    const std::array<std::string, 3> titles{base.name, other.name,
-                                            fmt::format("{} minus {}, mean of {} x {} pixels; blue: {} has less",
-                                                        other.name, base.name, block, block, other.name)};
-    const std::array<unsigned, 3> row_top{top, top + row_height, top + 2 * row_height + bar};
-    for (unsigned row = 0; row < 3; ++row) canvas.text(margin, row_top[row], titles[row], text_scale);
+    const auto title_lines = broken(title);
+    const std::array row_titles{
+        broken(base.name), broken(other.name),
+        broken(fmt::format("{} minus {}, mean of {} x {} pixels", other.name, base.name, block, block))};
+    const auto footer = broken(
+        "Scales end at about the 1st and 99th percentile of what they show; DRAM bytes begin at 0. <= and >=: values "
+        "beyond have the colour of the end. Grey: nothing read.");
+
+    const unsigned bar = bar_height + 3 * line + margin, heading = 3 * glyph_height + margin;
+    const unsigned top = margin + height(title_lines) + heading + 4;
+    std::array<unsigned, 3> row_top{top, 0, 0}, panel_top{};
+    for (unsigned row = 0; row < 3; ++row) {
+        panel_top[row] = row_top[row] + height(row_titles[row]);
+        if (row < 2) row_top[row + 1] = panel_top[row] + zoom.panel_height + margin + (row == 1 ? bar : 0);
+    }
+    const unsigned bottom = panel_top[2] + zoom.panel_height + margin + bar;
+    Canvas canvas(2 * margin + text_width, bottom + height(footer) + margin);
+    const auto write = [&](unsigned y, const std::vector<std::string>& lines) {
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            canvas.text(margin, y + static_cast<unsigned>(i) * line, lines[i], text_scale);
+    };
+    write(margin, title_lines);
+    for (unsigned row = 0; row < 3; ++row) write(row_top[row], row_titles[row]);
+    write(bottom, footer);
+
+    const auto quantities = quantities_of(base.lanes);
     for (unsigned column = 0; column < quantities.size(); ++column) {
         const Quantity& quantity = quantities[column];
         const unsigned x = margin + column * (panel + margin);
         const Grid grid = grid_of(base, quantity), other_grid = grid_of(other, quantity);
         const Grid change = difference(grid, other_grid);
-        const Scale scale = common_scale(quantity, grid, other_grid), change_scale = symmetric_scale(change.values);
-        canvas.text(x, margin + line + 8, quantity.title, 3);
-        draw_panel(canvas, x, row_top[0] + line, grid, scale, zoom);
-        draw_panel(canvas, x, row_top[1] + line, other_grid, scale, zoom);
-        ScaleBar::draw(canvas, x, row_top[1] + row_height - 4, zoom.panel_width, scale, quantity.unit);
-        draw_panel(canvas, x, row_top[2] + line, change, change_scale, zoom);
-        ScaleBar::draw(canvas, x, row_top[2] + row_height - 4, zoom.panel_width, change_scale, quantity.difference);
+        const Scale scale = common_scale(quantity, grid, other_grid),
+                    change_scale = with_cuts(symmetric_scale(change.values), change.values);
+        canvas.text(x, margin + height(title_lines) + 8, quantity.title, 3);
+        const auto draw_bar = [&](unsigned row, const Scale& of_row, const std::string& unit) {
+            ScaleBar::draw(canvas, x, panel_top[row] + zoom.panel_height + margin - 4, zoom.panel_width, of_row, unit);
+        };
+        draw_panel(canvas, x, panel_top[0], grid, scale, zoom);
+        draw_panel(canvas, x, panel_top[1], other_grid, scale, zoom);
+        draw_bar(1, scale, quantity.unit);
+        draw_panel(canvas, x, panel_top[2], change, change_scale, zoom);
+        draw_bar(2, change_scale, quantity.difference);
+        canvas.text(
+            x + (zoom.panel_width - std::min(zoom.panel_width, Canvas::text_width(quantity.better, text_scale))) / 2,
+            panel_top[2] + zoom.panel_height + margin + bar_height + 2 * line, quantity.better, text_scale);
     }
     return canvas.image();
 }

@@ -10,7 +10,8 @@ namespace raycache::tools {
 
 /// Three rows of three panels: base, other, and how they differ (other minus base, blurred). The first two share one
 /// scale for each quantity, from the 1st to the 99th percentile of both. Both maps have the same size.
-/// `title`: one line above all.
+/// Under each scale stand its unit and, for a difference, which colour is better. `title`: above all. Texts are broken
+/// into lines where they are too long.
 tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const HeatMap& other);
 
 }  // namespace raycache::tools

@@ -5,6 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/outputs.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/error.hpp"
 #include "traces/rtwarp/import.hpp"
@@ -18,6 +19,7 @@ struct Options {
 };
 
 void run(const Options& o) {
+    refuse_overwriting({o.input}, {o.output});
     if (traces::looks_like_rtwarp(o.input)) {
         if (o.fuse)
             throw UsageError("--fuse: expected an Accel-Sim trace, found an RTWARP01 trace, whose objects are whole");
@@ -48,7 +50,7 @@ void add_import(CLI::App& app) {
         "import", "Make a trace of an Accel-Sim (NVBit) trace's global loads, or of an RTWARP01 trace");
     command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz; or an RTWARP01 trace, plain or zstd")
         ->required();
-    command->add_option("-o,--output", o->output, "trace to write (.rct)")->required();
+    command->add_option("-o,--output", o->output, "trace to write (.rct), or - for stdout")->required();
     command->add_flag("--fuse", o->fuse, "one access for loads of a warp that read on, lane by lane: a split object");
     command->footer(
         "Examples:\n"

@@ -10,7 +10,6 @@
 
 #include "tools/console.hpp"
 #include "traces/error.hpp"
-#include "traces/output_file.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -44,20 +43,6 @@ tracer::SceneRequest::Sky parse_sky(const std::string& text) {
     if (text == "on") return tracer::SceneRequest::Sky::on;
     if (text == "off") return tracer::SceneRequest::Sky::off;
     throw UsageError(fmt::format("--sky '{}'; expected one of: auto, on, off", text));
-}
-
-cachesim::GroupBy parse_by(const std::string& text) {
-    if (text == "none") return cachesim::GroupBy::none;
-    if (text == "bounce") return cachesim::GroupBy::bounce;
-    if (text == "ray") return cachesim::GroupBy::ray;
-    if (text == "object") return cachesim::GroupBy::object;
-    throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
-}
-
-void save_text(const std::string& path, const std::string& text) {
-    traces::OutputFile file(path);
-    file.write(text);
-    file.commit();
 }
 
 }  // namespace
@@ -96,7 +81,8 @@ void SceneOptions::add(CLI::App& app, bool positional) {
     app.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
 }
 
-std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare() const {
+std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare(const FileNames& outputs) const {
+    if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);  // before anything takes time
     tracer::SceneRequest request;
     request.source = source;
     request.detail = detail;
@@ -107,7 +93,9 @@ std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare() const {
     if (fov != 0) request.vertical_fov = fov;
     tracer::BvhSettings bvh;
     bvh.spatial_splits = spatial_splits;
-    return std::make_unique<tracer::PreparedScene>(tracer::load_scene(request, warn), bvh);
+    tracer::Scene scene = tracer::load_scene(request, warn);
+    refuse_overwriting(scene.files, outputs);
+    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh);
 }
 
 std::string SceneOptions::command() const {
@@ -244,94 +232,6 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
         interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;
-}
-
-void ReportOptions::add(CLI::App& app, bool with_baseline) {
-    app.add_option("--gpu", gpus, "GPU preset or FILE.toml; may be repeated (see 'raycache list gpus')")
-        ->required()
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    app.add_option("--set", changes, "KEY=VALUE: another value for a key of every GPU file; may be repeated")
-        ->allow_extra_args(false);
-    app.add_flag("--timed", timed, "predict cycles: latencies, queues and bandwidths instead of order alone");
-    app.add_option("--warps-per-sm", warps_per_sm, "resident warps of an SM, instead of the preset's")
-        ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
-    app.add_option(
-           "--by", by,
-           "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
-        ->capture_default_str();
-    if (with_baseline)
-        app.add_option("--baseline", baseline,
-                       "strategy that ratios refer to; default: cranley-patterson where it is compared");
-    app.add_flag("--json", json, "print JSON");
-    app.add_flag("--csv", csv, "print CSV");
-    app.add_option("--counters", counters,
-                   "ncu: instead of the table, totals under the names of Nsight Compute's metrics")
-        ->check(CLI::IsMember({"ncu"}));
-    app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
-}
-
-std::vector<cachesim::Gpu> ReportOptions::load_gpus() const {
-    std::vector<cachesim::Gpu> loaded;
-    for (const std::string& name : gpus) {
-        loaded.push_back(cachesim::load_gpu(name, changes));
-        if (warps_per_sm != 0) loaded.back().warps_per_sm = warps_per_sm;
-    }
-    check(loaded);
-    return loaded;
-}
-
-void ReportOptions::check(const std::vector<cachesim::Gpu>& loaded) const {
-    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
-    if (!counters.empty() && (json || csv))
-        throw UsageError("--counters with --json or --csv; expected it alone (--save PREFIX writes the other formats)");
-    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
-    if (timed && by != "none")
-        throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
-    for (const cachesim::Gpu& gpu : loaded)
-        if (!counters.empty() && gpu.levels.size() != 2)
-            throw UsageError(
-                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}", gpu.name,
-                            gpu.levels.size()));
-    parse_by(by);
-}
-
-namespace {
-
-/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
-template <class Series>
-std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
-    const std::string usual = "cranley-patterson";
-    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
-    const bool has_usual =
-        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
-    return asked.empty() && has_usual ? usual : asked;
-}
-
-template <class Report>
-void publish_report(const Report& report, const ReportOptions& o) {
-    if (!o.save.empty()) {
-        save_text(o.save + ".txt", cachesim::to_text(report));
-        save_text(o.save + ".json", cachesim::to_json(report));
-        save_text(o.save + ".csv", cachesim::to_csv(report));
-    }
-    if constexpr (requires { cachesim::to_profiler_text(report); }) {
-        if (!o.counters.empty()) {
-            print(cachesim::to_profiler_text(report));
-            return;
-        }
-    }
-    print(o.json ? cachesim::to_json(report) : o.csv ? cachesim::to_csv(report) : cachesim::to_text(report));
-}
-
-}  // namespace
-
-void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
-    publish_report(cachesim::make_report(series, baseline_of(series, baseline), parse_by(by)), *this);
-}
-
-void ReportOptions::publish(const std::vector<cachesim::TimedSeries>& series) const {
-    publish_report(cachesim::make_timed_report(series, baseline_of(series, baseline)), *this);
 }
 
 void ThreadOptions::add(CLI::App& app) {

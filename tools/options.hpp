@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cachesim/gpus/gpu.hpp"
-#include "cachesim/report/report.hpp"
-#include "cachesim/report/timed_report.hpp"
+#include "tools/outputs.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 
@@ -24,8 +22,9 @@ struct SceneOptions {
     bool spatial_splits = false;
 
     void add(CLI::App&, bool positional);
-    /// Loads the scene and builds everything on it; warnings go to stderr.
-    std::unique_ptr<tracer::PreparedScene> prepare() const;
+    /// Loads the scene and builds everything on it; warnings go to stderr. Throws UsageError if one of `outputs`, which
+    /// the caller is going to write, is a file that the scene is read from.
+    std::unique_ptr<tracer::PreparedScene> prepare(const FileNames& outputs) const;
     /// The options as they would be typed, for a trace's provenance.
     std::string command() const;
 };
@@ -58,23 +57,6 @@ struct SamplingOptions {
 
 private:
     std::string path_command() const;
-};
-
-/// Which GPUs, and how the table is cut and printed.
-struct ReportOptions {
-    std::vector<std::string> gpus, changes;
-    std::uint32_t warps_per_sm = 0;
-    bool timed = false;
-    std::string by = "none", baseline, save, counters;
-    bool json = false, csv = false;
-
-    void add(CLI::App&, bool with_baseline);
-    std::vector<cachesim::Gpu> load_gpus() const;
-    /// Refuses what cannot be printed together. load_gpus() calls it.
-    void check(const std::vector<cachesim::Gpu>&) const;
-    /// Makes the report of `series`, prints it in the chosen format, and saves all formats where asked.
-    void publish(const std::vector<cachesim::Series>& series) const;
-    void publish(const std::vector<cachesim::TimedSeries>& series) const;
 };
 
 /// --threads, and the limit it sets for the life of the object this returns.

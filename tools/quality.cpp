@@ -28,7 +28,7 @@ void run(const Options& o) {
     if (request.cases.empty()) throw UsageError("nothing to measure; expected at least one --strategy");
     request.baseline = o.common.baseline_of(o.strategies);
     request.pairs = o.pairs;
-    request.equal_time = !o.output.empty() && !o.common.report.gpus.empty();
+    request.equal_time = !o.output.empty() && !o.common.gpu.names.empty();
     const tracer::CaptureSettings& first = request.cases.front();
     std::optional<Crop> crop;
     if (!o.crop.empty()) {
@@ -36,10 +36,14 @@ void run(const Options& o) {
         crop = parse_crop(o.crop, first.width, first.height);
     }
     check(request);
-    if (!o.output.empty()) check_picture_folder(o.output);
-    const QualityReport report = o.common.measure(std::move(request));
+    FileNames pictures;
+    if (!o.output.empty()) {
+        check_picture_folder(o.output);
+        pictures = quality_picture_names(o.output, request.cases);
+    }
+    const QualityReport report = o.common.measure(std::move(request), pictures);
     if (!o.output.empty()) write_quality_pictures(o.output, report, crop);
-    print(o.common.report.json ? to_json(report) : o.common.report.csv ? to_csv(report) : to_text(report));
+    print(o.common.json ? to_json(report) : o.common.csv ? to_csv(report) : to_text(report));
 }
 
 }  // namespace

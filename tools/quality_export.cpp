@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cachesim/report/csv_field.hpp"
 #include "tools/quality_report.hpp"
 
 namespace raycache::tools {
@@ -59,13 +60,7 @@ Json row_json(const QualityRow& row, const std::vector<QualityRow>& all) {
     return json;
 }
 
-/// An RFC 4180 field.
-std::string field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + '"';
-}
+std::string field(const std::string& text) { return cachesim::csv_field(text); }
 std::string field(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 }  // namespace
@@ -95,7 +90,7 @@ std::string to_json(const QualityReport& report, const Recommendation* recommend
 std::string to_csv(const QualityReport& report) {
     std::string text =
         "scene,strategy,sequence,parameters,mu,spp,rmse,rmse_error,rmse_ratio,relative_rmse,r8,r8_error,block_rmse,"
-        "mean_error,mean_error_deviation,z_pixels,z_seeds,worst_pair,worst_pair_share,predicted_seconds,speed_up,"
+        "mean_error,mean_error_deviation,z_pixels,z_seeds,worst_pair,worst_pair_share,gpu,predicted_seconds,speed_up,"
         "speed_up_ci95,equal_time_spp,equal_time_rmse,equal_time_r8\n";
     const double none = std::nan("");
     for (const QualityRow& row : report.rows) {
@@ -111,7 +106,7 @@ std::string to_csv(const QualityReport& report) {
         const auto worst = row.worst_pair();
         text += worst ? fmt::format(",{}-{},{}", 2 * worst->pair, 2 * worst->pair + 1, field(worst->share)) : ",,";
         const auto speed_up = row.timing ? row.timing->speed_up : std::nullopt;
-        text += fmt::format(",{},{},{}", field(row.timing ? row.timing->seconds : none),
+        text += fmt::format(",{},{},{},{}", field(report.gpu), field(row.timing ? row.timing->seconds : none),
                             field(speed_up ? speed_up->mean : none),
                             field(speed_up && speed_up->half_width ? *speed_up->half_width : none));
         const auto& same = row.equal_time;

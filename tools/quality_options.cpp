@@ -23,32 +23,30 @@ void QualityOptions::add(CLI::App& app, bool require_gpu) {
                    "settings");
     app.add_option("--repeats", repeats, "pictures of each strategy, with seeds one after the other")
         ->capture_default_str();
-    CLI::Option* gpu = app.add_option("--gpu", report.gpus,
-                                      "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
-                           ->expected(1);
-    if (require_gpu) gpu->required();
-    app.add_option("--set", report.changes, "KEY=VALUE: another value for a key of the GPU file; may be repeated")
-        ->allow_extra_args(false);
-    app.add_option("--warps-per-sm", report.warps_per_sm, "resident warps of an SM, instead of the preset's")
-        ->check(CLI::Range(std::uint32_t{1}, std::uint32_t{2048}));
-    app.add_option("--baseline", report.baseline,
+    app.add_option("--gpu", gpu.names, "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
+        ->expected(1)
+        ->required(require_gpu);
+    gpu.add_changes(app);
+    app.add_option("--baseline", baseline,
                    "strategy that ratios refer to; default: cranley-patterson where it is compared");
     sampling.add_launches(app);
     sampling.add_picture(app);
     sampling.add_strategy(app);
-    app.add_flag("--json", report.json, "print JSON");
-    app.add_flag("--csv", report.csv, "print CSV");
+    app.add_flag("--json", json, "print JSON");
+    app.add_flag("--csv", csv, "print CSV");
     threads.add(app);
 }
 
 std::string QualityOptions::baseline_of(const std::vector<std::string>& strategies) const {
     const std::string usual = "cranley-patterson";
-    if (!report.baseline.empty()) return report.baseline;
+    if (!baseline.empty()) return baseline;
     return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
 }
 
-QualityReport QualityOptions::measure(QualityRequest request) const {
-    const auto gpus = report.load_gpus();
+QualityReport QualityOptions::measure(QualityRequest request, const FileNames& outputs) const {
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them");
+    const auto gpus = gpu.load(outputs);
+    gpu.check_timed(gpus);
     if (!gpus.empty()) request.gpu = gpus.front();
     request.repeats = repeats;
     check(request);
@@ -65,7 +63,7 @@ QualityReport QualityOptions::measure(QualityRequest request) const {
         if (!w.empty()) warn(w);
 
     const auto limit = threads.apply();
-    const auto prepared = scene.prepare();
+    const auto prepared = scene.prepare(outputs);
     const tracer::CaptureSettings& first = request.cases.front();
     QualityReport result;
     tracer::Reference reference =

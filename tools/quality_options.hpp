@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/gpu_options.hpp"
 #include "tools/options.hpp"
 #include "tools/quality_report.hpp"
 
@@ -12,15 +13,18 @@ namespace raycache::tools {
 struct QualityOptions {
     SceneOptions scene;
     SamplingOptions sampling;
-    ReportOptions report;  ///< GPU, its changes, baseline, format
+    GpuOptions gpu;  ///< at most one
+    std::string baseline;
+    bool json = false, csv = false;
     ThreadOptions threads;
     std::uint64_t reference_spp = 1024, repeats = 1;
     std::string reference_file, reference_strategy = "random";
 
     /// `require_gpu`: --gpu must be given; else it may be.
     void add(CLI::App&, bool require_gpu);
-    /// Fills in what the options say, checks it, loads the scene, finds the reference and measures.
-    QualityReport measure(QualityRequest request) const;
+    /// Fills in what the options say, checks it, loads the scene, finds the reference and measures. `outputs`: what the
+    /// caller is going to write.
+    QualityReport measure(QualityRequest request, const FileNames& outputs) const;
     /// Of these strategies: the one asked for, else Cranley-Patterson where it is among them.
     std::string baseline_of(const std::vector<std::string>& strategies) const;
 };

@@ -10,6 +10,7 @@
 #include "tools/canvas.hpp"
 #include "tools/colour_scale.hpp"
 #include "tools/exposure.hpp"
+#include "tools/outputs.hpp"
 #include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
@@ -201,12 +202,25 @@ Crop parse_crop(const std::string& text, std::uint32_t width, std::uint32_t heig
 }
 
 void check_picture_folder(const std::string& folder) {
+    refuse_stdout("--output", folder);
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
         throw Error(fmt::format("--output {}: expected a folder that can be made, found: {}; choose another", folder,
                                 error.message()));
     const traces::OutputFile probe((std::filesystem::path(folder) / "index.png").string());
+}
+
+std::vector<std::string> quality_picture_names(const std::string& folder,
+                                               const std::vector<tracer::CaptureSettings>& cases) {
+    const std::filesystem::path path(folder);
+    std::vector<std::string> names{(path / "index.png").string(), (path / "reference.png").string()};
+    std::vector<QualityRow> rows(cases.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].settings = cases[i];
+    for (const QualityRow& row : rows)
+        for (const char* end : {".exr", ".png", "_error.exr", "_error.png", "_blocks.exr"})
+            names.push_back((path / file_name(label(row, rows))).string() + end);
+    return names;
 }
 
 void write_quality_pictures(const std::string& folder, const QualityReport& report,

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/quality_report.hpp"
 
@@ -18,6 +19,10 @@ Crop parse_crop(const std::string&, std::uint32_t width, std::uint32_t height);
 
 /// Makes the folder if need be. Throws Error unless files can be written there.
 void check_picture_folder(const std::string& folder);
+
+/// The files that write_quality_pictures() will write.
+std::vector<std::string> quality_picture_names(const std::string& folder,
+                                               const std::vector<tracer::CaptureSettings>& cases);
 
 /// Writes into `folder`: index.png (a row per strategy: crop, its error, all blocks' mean errors, and with equal_time
 /// crop and error at that N), reference.png, and for each strategy NAME.exr and .png (its picture), NAME_error.exr and

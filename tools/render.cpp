@@ -31,7 +31,7 @@ void run(const Options& o, bool given_exposure) {
     const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
 
     const auto limit = o.threads.apply();
-    const auto scene = o.scene.prepare();
+    const auto scene = o.scene.prepare({o.output});
     tracer::Image image;
     {
         const std::uint64_t paths = std::uint64_t{size.width} * size.height * o.spp;

@@ -2,6 +2,7 @@
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
 #include "tools/replay_job.hpp"
+#include "tools/report_options.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -13,7 +14,7 @@ struct Options {
 };
 
 void run(const Options& o) {
-    const auto gpus = o.report.load_gpus();
+    const auto gpus = o.report.load_gpus({o.path});
     const auto limit = o.threads.apply();
     if (o.report.timed)
         o.report.publish(replay_files_timed({o.path}, gpus));
@@ -34,7 +35,8 @@ void add_replay(CLI::App& app) {
         "  raycache replay mj.rct --gpu gtx-980-ti\n"
         "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json\n"
         "  raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu");
+        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu\n"
+        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu --by bounce --csv");
     command->callback([o] { run(*o); });
 }
 

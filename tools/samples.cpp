@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/options.hpp"
+#include "tools/outputs.hpp"
 #include "tools/samples_picture.hpp"
 #include "tools/samples_tables.hpp"
 #include "tools/samples_union.hpp"
@@ -73,6 +74,7 @@ void run(const Options& o) {
         print(o.json ? table.json() : table.text());
         return;
     }
+    refuse_stdout("--csv", o.csv);
     check_picture_name("--picture", o.picture);
     check_picture_name("--figure2", o.figure2);
     const SampleUnion samples = make(o, o.strategy, "");

@@ -90,14 +90,14 @@ void run(const Options& o) {
     if (std::find(others.begin(), others.end(), baseline) == others.end()) others.emplace_back(baseline);
     for (const std::string& strategy : others) add(strategy, std::nullopt);
     request.baseline = baseline;
-    if (!o.common.report.baseline.empty() && o.common.report.baseline != baseline)
-        throw UsageError(fmt::format("--baseline {}; expected {}, which a sweep is held against",
-                                     o.common.report.baseline, baseline));
-    const QualityReport report = o.common.measure(std::move(request));
+    if (!o.common.baseline.empty() && o.common.baseline != baseline)
+        throw UsageError(
+            fmt::format("--baseline {}; expected {}, which a sweep is held against", o.common.baseline, baseline));
+    const QualityReport report = o.common.measure(std::move(request), {});
     const Recommendation advice = recommend(o, report);
-    if (o.common.report.json)
+    if (o.common.json)
         print(to_json(report, &advice));
-    else if (o.common.report.csv)
+    else if (o.common.csv)
         print(to_csv(report));
     else
         print(to_text(report) + "\nrecommendation: " + advice.text + "\n");

@@ -6,6 +6,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/outputs.hpp"
 #include "traces/verify.hpp"
 
 namespace raycache::tools {
@@ -17,6 +18,8 @@ struct Options {
 };
 
 void run(const Options& o) {
+    refuse_overwriting({o.path}, {o.recovered});
+    refuse_stdout("--recover", o.recovered);
     nlohmann::ordered_json out;
     std::string text;
     if (o.recovered.empty()) {

@@ -127,7 +127,7 @@ std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t fi
     if (!starts_with(front, format::file_magic.substr(0, std::min(front.size(), format::file_magic.size()))) ||
         front.empty())
         refuse(origin, "magic", "RCTRACE", front.empty() ? "an empty file" : "other bytes",
-               "this is no raycache trace: name a file that `raycache trace` wrote");
+               "this is no raycache trace: name a file that `raycache capture` or `raycache import` wrote");
     if (front.size() < fixed_header_bytes)
         refuse(origin, "head of the file", fmt::format("at least {} bytes", fixed_header_bytes),
                fmt::format("{}", front.size()), recapture);

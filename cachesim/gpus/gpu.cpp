@@ -45,8 +45,7 @@ struct GpuText {
 };
 
 GpuText find_text(const std::string& name_or_path) {
-    if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
-        return {read_file(name_or_path), name_or_path};
+    if (is_gpu_file(name_or_path)) return {read_file(name_or_path), name_or_path};
     std::vector<std::string> names;
     for (const PresetText& preset : preset_texts()) {
         if (preset.name == name_or_path) return {preset.toml, preset.name + ".toml"};
@@ -57,6 +56,10 @@ GpuText find_text(const std::string& name_or_path) {
 }
 
 }  // namespace
+
+bool is_gpu_file(const std::string& name_or_path) {
+    return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml");
+}
 
 Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes) {
     const GpuText text = find_text(name_or_path);

@@ -73,7 +73,7 @@ struct FrontEnd {
 };
 
 struct Gpu {
-    std::string name;         ///< "gtx-980-ti"
+    std::string name;         ///< "gtx-980-ti"; with what was changed, "gtx-980-ti (l1.ways=64, sms=16)"
     std::string description;  ///< "GeForce GTX 980 Ti (GM200, Maxwell)"
     std::uint32_t sms = 0;
     std::uint32_t warps_per_sm = 0;      ///< resident at once; a multiple of the CTA size is not required
@@ -96,8 +96,11 @@ struct Gpu {
 /// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). `changes`: values that take
 /// the place of the file's, "KEY=VALUE" with a value in TOML, such as "l1.ways=64" or "timing.l1_port='banks'". Throws
 /// UsageError for an unknown name (listing the valid ones) or a change that is none; Error "FILE:LINE: …" for unknown
-/// or missing keys, wrong types, impossible geometry.
+/// or missing keys, wrong types, impossible geometry. The changes stand in the GPU's name.
 Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes = {});
+
+/// Whether load_gpu() takes it for the path of a file.
+bool is_gpu_file(const std::string& name_or_path);
 
 struct GpuPreset {
     std::string name, description;

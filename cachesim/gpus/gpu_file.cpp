@@ -1,5 +1,7 @@
 #include "cachesim/gpus/gpu_file.hpp"
 
+#include <set>
+
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/gpus/toml_reader.hpp"
 #include "traces/record.hpp"
@@ -211,12 +213,25 @@ Gpu read(TomlReader& file) {
     return gpu;
 }
 
+/// " (l1.ways=64, sms=16)": the values of these keys, as the GPU has them. What has no value of its own, a name, is
+/// passed over.
+std::string list_of(const std::set<std::string>& keys, const std::vector<GpuValue>& values) {
+    std::string list;
+    for (const std::string& key : keys)
+        for (const GpuValue& v : values)
+            if (v.key == key) list += fmt::format("{}{}={}", list.empty() ? " (" : ", ", key, v.value);
+    return list.empty() ? list : list + ')';
+}
+
 }  // namespace
 
 Gpu parse_gpu(const std::string& toml, const std::string& file, const std::vector<std::string>& changes) {
     TomlReader reader(toml, file);
-    for (const std::string& change : changes) reader.change(change);
-    return read(reader);
+    std::set<std::string> changed;
+    for (const std::string& change : changes) changed.insert(reader.change(change));
+    Gpu gpu = read(reader);
+    gpu.name += list_of(changed, reader.values());
+    return gpu;
 }
 
 std::vector<GpuValue> parse_gpu_values(const std::string& toml, const std::string& file) {

@@ -47,8 +47,8 @@ public:
     }
 
     /// "KEY=VALUE": from now on the key has this value; KEY may be in a table of the file, "l1.ways". VALUE is TOML,
-    /// but a word needs no quotes. Throws UsageError if it is neither.
-    void change(const std::string& assignment) {
+    /// but a word needs no quotes. Returns the key. Throws UsageError if it is neither.
+    std::string change(const std::string& assignment) {
         toml::table given;
         const auto parse = [&](const std::string& text) {
             try {
@@ -69,13 +69,15 @@ public:
         const toml::table* inner = value.as_table();
         if (!inner) {
             root_.insert_or_assign(key, value);
-            return;
+            return key;
         }
         toml::table* own = root_[key].as_table();
         if (!own || inner->size() != 1)
             throw UsageError(
                 fmt::format("{}: expected a key of a table of the file, found \"{}\"", file_, one_line(assignment)));
-        own->insert_or_assign(std::string(inner->begin()->first.str()), inner->begin()->second);
+        const std::string inner_key(inner->begin()->first.str());
+        own->insert_or_assign(inner_key, inner->begin()->second);
+        return key + '.' + inner_key;
     }
 
     /// A table of the file: the root, or one below it. Keys that are absent from `known` are errors.

@@ -2,21 +2,17 @@
 
 #include <cmath>
 
+#include "cachesim/report/csv_field.hpp"
 #include "cachesim/report/report.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
 
-/// One record of comma-separated values (RFC 4180, lines end in '\n'). A value that does not exist is an empty field.
+/// One record of comma-separated values; lines end in '\n'. A value that does not exist is an empty field.
 class Line {
 public:
-    void text(const std::string& value) {
-        if (value.find_first_of(",\"\r\n") == std::string::npos) return raw(value);
-        std::string quoted = "\"";
-        for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
-        raw(quoted + '"');
-    }
+    void text(const std::string& value) { raw(csv_field(value)); }
     void number(std::uint64_t value) { raw(fmt::format("{}", value)); }
     /// The shortest digits that read back as the same double.
     void number(double value) { raw(std::isfinite(value) ? fmt::format("{}", value) : ""); }

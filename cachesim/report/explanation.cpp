@@ -25,9 +25,12 @@ Estimate ratio(const Explanation& e, std::uint64_t Counters::*sectors) {
     return ratio_to_baseline(sectors_per_ray(e.other, sectors), sectors_per_ray(e.base, sectors));
 }
 
-/// "32.0 % fewer", "4.1 % more".
+/// "32.0 % fewer", "4.1 % more", "0.02 % more", "as many".
 std::string change(double ratio) {
-    return fmt::format("{:.1f} % {}", 100 * std::fabs(ratio - 1), ratio < 1 ? "fewer" : "more");
+    if (ratio == 1) return "as many";
+    const double percent = 100 * std::fabs(ratio - 1);
+    return fmt::format("{} % {}", percent < 0.05 ? fmt::format("{:.1g}", percent) : fmt::format("{:.1f}", percent),
+                       ratio < 1 ? "fewer" : "more");
 }
 
 bool certain(const Estimate& ratio) { return !ratio.half_width || std::fabs(ratio.mean - 1) > *ratio.half_width; }
@@ -51,9 +54,14 @@ std::string sentence(const Explanation& e) {
     const auto bytes = [&](const Counters& c) {
         return static_cast<double>(c.dram_sectors) * e.sector_bytes / static_cast<double>(c.rays);
     };
-    std::string text =
-        fmt::format("{} reads {} DRAM bytes per ray than {} ({:.1f} against {:.1f}) and {} L2-to-L1 bytes",
-                    e.other.name, change(dram.mean), e.base.name, bytes(other), bytes(base), change(l2.mean));
+    if (dram.mean == 1 && l2.mean == 1)
+        return fmt::format(
+            "There is no difference: {} reads as many DRAM bytes per ray as {}, {:.1f}, and as many "
+            "L2-to-L1 bytes.",
+            e.other.name, e.base.name, bytes(other));
+    std::string text = fmt::format("{} reads {} DRAM bytes per ray {} {} ({:.1f} against {:.1f}) and {} L2-to-L1 bytes",
+                                   e.other.name, change(dram.mean), dram.mean == 1 ? "as" : "than", e.base.name,
+                                   bytes(other), bytes(base), change(l2.mean));
     if (const auto most = main_term(*factors))
         text += fmt::format("; {} does most, x{:.3f} ({})", most->term->name, most->factor, most->meaning());
     text += fmt::format("; with equal miss rates x{:.3f} would remain, the miss rates give x{:.3f}",
@@ -70,10 +78,11 @@ std::string factor_sentences(const Report& report) {
     for (const Row& row : report.rows) {
         if (!row.factors || !row.dram_bytes_ratio) continue;
         const auto most = main_term(*row.factors);
-        if (!most) continue;
         text += fmt::format("{}, N {}, {}{}: ", row.strategy, row.spp, row.gpu,
                             report.by == GroupBy::none ? "" : ", " + row.group);
-        if (certain(*row.dram_bytes_ratio))
+        if (!most)
+            text += "no difference in DRAM bytes/ray.\n";
+        else if (certain(*row.dram_bytes_ratio))
             text += fmt::format("{} DRAM bytes/ray, most by {}, x{:.3f} ({}).\n", change(row.dram_bytes_ratio->mean),
                                 most->term->name, most->factor, most->meaning());
         else

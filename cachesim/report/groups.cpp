@@ -16,10 +16,10 @@ class Groups {
 public:
     explicit Groups(std::size_t launches) : launches_(launches) {}
 
-    Counters& at(unsigned key, const std::string& name, std::size_t launch) {
+    LaunchGroup& at(unsigned key, const std::string& name) {
         LaunchGroup& group = groups_[key];
-        if (group.by_launch.empty()) group = {name, std::vector<Counters>(launches_)};
-        return group.by_launch[launch];
+        if (group.by_launch.empty()) group = {name, std::vector<Counters>(launches_), {}, {}};
+        return group;
     }
 
     std::vector<LaunchGroup> in_order() const {
@@ -33,6 +33,21 @@ private:
     std::map<unsigned, LaunchGroup> groups_;
 };
 
+/// What a launch did with objects of one kind.
+void add(LaunchGroup& group, std::size_t launch, traces::ObjectKind kind, const Counters& counters) {
+    group.by_launch[launch] += counters;
+    if (traces::is_write(kind))
+        group.stores += counters;
+    else if (kind != traces::ObjectKind::sort)
+        group.loads += counters;
+}
+
+void add(LaunchGroup& group, std::size_t launch, const RayGroup& rays) {
+    for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
+        add(group, launch, static_cast<traces::ObjectKind>(kind), rays.by_kind[kind]);
+    group.by_launch[launch].rays += rays.rays;
+}
+
 std::string bounce_name(const RayGroup& group) {
     const char* ray = ray_names[static_cast<unsigned>(group.ray)];
     return group.ray == traces::RayType::camera ? ray : fmt::format("{} {}", ray, group.bounce);
@@ -40,12 +55,13 @@ std::string bounce_name(const RayGroup& group) {
 
 void add_kinds(Groups& groups, const LaunchStatistics& launch, std::size_t i) {
     const std::uint64_t rays = launch.all().rays;
-    for (const RayGroup& group : launch.groups)
-        for (unsigned kind = 0; kind < traces::object_kinds; ++kind)
-            if (group.by_kind[kind].warp_accesses) {
-                Counters& sum = groups.at(kind, traces::name_of(static_cast<traces::ObjectKind>(kind)), i);
-                sum += group.by_kind[kind];
-                sum.rays = rays;
+    for (const RayGroup& of_rays : launch.groups)
+        for (unsigned k = 0; k < traces::object_kinds; ++k)
+            if (of_rays.by_kind[k].warp_accesses) {
+                const auto kind = static_cast<traces::ObjectKind>(k);
+                LaunchGroup& group = groups.at(k, traces::name_of(kind));
+                add(group, i, kind, of_rays.by_kind[k]);
+                group.by_launch[i].rays = rays;
             }
 }
 
@@ -54,15 +70,19 @@ void add_kinds(Groups& groups, const LaunchStatistics& launch, std::size_t i) {
 std::vector<LaunchGroup> split(const std::vector<LaunchStatistics>& launches, GroupBy by) {
     Groups groups(launches.size());
     for (std::size_t i = 0; i < launches.size(); ++i) {
-        if (by == GroupBy::none) groups.at(0, "all", i) = launches[i].all();
-        if (by == GroupBy::object) add_kinds(groups, launches[i], i);
-        if (by != GroupBy::ray && by != GroupBy::bounce) continue;
-        for (const RayGroup& group : launches[i].groups) {
-            const auto ray = static_cast<unsigned>(group.ray);
-            if (by == GroupBy::ray)
-                groups.at(ray, ray_names[ray], i) += group.all();
+        if (by == GroupBy::none) groups.at(0, "all");  // there even if the launch has no rays
+        if (by == GroupBy::object) {
+            add_kinds(groups, launches[i], i);
+            continue;
+        }
+        for (const RayGroup& of_rays : launches[i].groups) {
+            const auto ray = static_cast<unsigned>(of_rays.ray);
+            if (by == GroupBy::none)
+                add(groups.at(0, "all"), i, of_rays);
+            else if (by == GroupBy::ray)
+                add(groups.at(ray, ray_names[ray]), i, of_rays);
             else
-                groups.at(ray * 256 + group.bounce, bounce_name(group), i) += group.all();
+                add(groups.at(ray * 256 + of_rays.bounce, bounce_name(of_rays)), i, of_rays);
         }
     }
     return groups.in_order();

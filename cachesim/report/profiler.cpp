@@ -1,66 +1,145 @@
+#include "cachesim/report/profiler.hpp"
+
 #include <fmt/format.h>
 
-#include "cachesim/report/report.hpp"
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "cachesim/report/csv_field.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
 
-using Align = TextTable::Align;
+using Json = nlohmann::ordered_json;
 
-std::string count(std::uint64_t value) { return fmt::format("{}", value); }
+/// A count, or a quotient: NaN where nothing was counted.
+using Value = std::variant<std::uint64_t, double>;
 
-/// With so many decimals; "-" where nothing was counted.
-std::string quotient(double part, double whole, int digits) {
-    return whole > 0 ? fmt::format("{:.{}f}", part / whole, digits) : "-";
-}
-std::string quotient(std::uint64_t part, std::uint64_t whole, int digits, double scale = 1) {
-    return quotient(scale * static_cast<double>(part), static_cast<double>(whole), digits);
+Value quotient(std::uint64_t part, std::uint64_t whole, double scale = 1) {
+    return whole > 0 ? scale * static_cast<double>(part) / static_cast<double>(whole) : std::nan("");
 }
 
 /// A metric of Nsight Compute, and what it is here.
 struct Metric {
     const char* name;
-    std::string (*value)(const Row&);
+    Value (*value)(const Row&);
 };
 
-constexpr Metric metrics[] = {
-    {"l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum", [](const Row& r) { return count(r.totals.l1_requests); }},
-    {"l1tex__t_sector_hit_rate.pct",
-     [](const Row& r) { return quotient(r.totals.l1_request_hits(), r.totals.l1_requests, 2, 100); }},
+constexpr Metric of_loads[] = {
+    {"l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum", [](const Row& r) -> Value { return r.loads.l1_requests; }},
+    {"l1tex__t_sector_pipe_lsu_mem_global_op_ld_hit_rate.pct",
+     [](const Row& r) { return quotient(r.loads.l1_request_hits(), r.loads.l1_requests, 100); }},
     {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio",
-     [](const Row& r) { return quotient(r.totals.l1_requests, r.totals.loads, 2); }},
-    {"l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum", [](const Row& r) { return count(r.totals.l2_sectors); }},
-    {"lts__t_sectors_srcunit_tex_lookup_hit.sum", [](const Row& r) { return count(r.totals.l2_hits); }},
-    {"lts__t_sectors_srcunit_tex_lookup_miss.sum",
-     [](const Row& r) { return count(r.totals.l2_sectors - r.totals.l2_hits); }},
-    {"lts__t_sector_hit_rate.pct",
-     [](const Row& r) { return quotient(r.totals.l2_hits, r.totals.l2_sectors, 2, 100); }},
-    {"dram__bytes_read.sum", [](const Row& r) { return count(r.totals.dram_sectors * r.sector_bytes); }},
+     [](const Row& r) { return quotient(r.loads.l1_requests, r.loads.loads); }},
+    {"l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum", [](const Row& r) -> Value { return r.loads.l2_sectors; }},
+    {"lts__t_sectors_srcunit_tex_op_read_lookup_hit.sum", [](const Row& r) -> Value { return r.loads.l2_hits; }},
+    {"lts__t_sectors_srcunit_tex_op_read_lookup_miss.sum",
+     [](const Row& r) -> Value { return r.loads.l2_sectors - r.loads.l2_hits; }},
+    {"lts__t_sector_op_read_hit_rate.pct",
+     [](const Row& r) { return quotient(r.loads.l2_hits, r.loads.l2_sectors, 100); }},
+    {"dram__bytes_read.sum", [](const Row& r) -> Value { return r.loads.dram_sectors * r.sector_bytes; }},
     {"smsp__thread_inst_executed_per_inst_executed.ratio",
-     [](const Row& r) { return quotient(r.totals.lane_accesses, r.totals.warp_accesses, 2); }},
+     [](const Row& r) {
+         return quotient(r.loads.lane_accesses + r.stores.lane_accesses,
+                         r.loads.warp_accesses + r.stores.warp_accesses);
+     }},
 };
+
+/// Shown where some trace is of a wavefront. None is of hits: a written sector is in L2 afterwards, whatever was there.
+constexpr Metric of_stores[] = {
+    {"l1tex__t_sectors_pipe_lsu_mem_global_op_st.sum", [](const Row& r) -> Value { return r.stores.l1_requests; }},
+    {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_st.ratio",
+     [](const Row& r) { return quotient(r.stores.l1_requests, r.stores.loads); }},
+    {"l1tex__m_l1tex2xbar_write_sectors_mem_lg_op_st.sum", [](const Row& r) -> Value { return r.stores.l2_sectors; }},
+    {"lts__t_sectors_op_write.sum", [](const Row& r) -> Value { return r.stores.l2_sectors; }},
+    {"dram__bytes_write.sum", [](const Row& r) -> Value { return r.stores.dram_sectors * r.sector_bytes; }},
+    {"dram__bytes.sum", [](const Row& r) -> Value { return r.totals.dram_sectors * r.sector_bytes; }},
+};
+
+std::vector<Metric> metrics_of(const Report& report) {
+    std::vector<Metric> metrics(std::begin(of_loads), std::end(of_loads));
+    if (report.has_wavefront()) metrics.insert(metrics.end(), std::begin(of_stores), std::end(of_stores));
+    return metrics;
+}
+
+/// `none` where there is no value; -1 digits: the shortest that read back as the same number.
+std::string to_string(const Value& value, int digits, const char* none) {
+    if (const auto* count = std::get_if<std::uint64_t>(&value)) return fmt::format("{}", *count);
+    const double number = std::get<double>(value);
+    if (!std::isfinite(number)) return none;
+    return digits < 0 ? fmt::format("{}", number) : fmt::format("{:.{}f}", number, digits);
+}
+
+Json to_json(const Value& value) {
+    if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
+    const double number = std::get<double>(value);
+    return std::isfinite(number) ? Json(number) : Json(nullptr);
+}
 
 }  // namespace
 
-std::string to_profiler_text(const Report& report) {
+std::string to_text(const ProfilerReport& profile) {
+    const Report& report = profile.report;
     std::string text;
     for (const Row& row : report.rows) {
         TextTable table;
         table.column(fmt::format("{}, {}, N {}, {}{}", row.scene, row.strategy, row.spp, row.gpu,
                                  report.by == GroupBy::none ? "" : ", " + row.group),
-                     Align::left);
-        table.column("value", Align::right);
-        for (const Metric& metric : metrics) table.row({metric.name, metric.value(row)});
+                     TextTable::Align::left);
+        table.column("value", TextTable::Align::right);
+        for (const Metric& metric : metrics_of(report)) table.row({metric.name, to_string(metric.value(row), 2, "-")});
         text += table.text() + '\n';
     }
-    return text +
-           "Sums over all sample indices, of the simulated loads alone. l1tex counts every load instruction: a visit "
-           "to "
-           "an object\nis several, and their requests for a sector that an earlier one fetched hit. "
-           "thread_inst_executed: "
-           "active lanes per access.\n";
+    text +=
+        "Sums over all sample indices, of the simulated accesses alone. l1tex counts every load instruction: a visit "
+        "to an object\nis several, and their requests for a sector that an earlier one fetched hit. "
+        "thread_inst_executed: active lanes per access.\n";
+    if (report.has_wavefront())
+        text +=
+            "Stores: L2 gets each distinct sector of an access once, not of each store instruction. dram__bytes also "
+            "holds what\nsorting rays moves, which the trace does not split into reads and writes; no other name "
+            "counts "
+            "it.\n";
+    return text;
+}
+
+std::string to_json(const ProfilerReport& profile) {
+    constexpr const char* by[] = {"none", "bounce", "ray", "object"};
+    Json json{{"by", by[static_cast<unsigned>(profile.report.by)]}, {"rows", Json::array()}};
+    for (const Row& row : profile.report.rows) {
+        Json& out = json["rows"].emplace_back(Json{{"scene", row.scene},
+                                                   {"strategy", row.strategy},
+                                                   {"sequence", row.sequence},
+                                                   {"parameters", row.parameters},
+                                                   {"thread_map", row.thread_map},
+                                                   {"gpu", row.gpu},
+                                                   {"group", row.group},
+                                                   {"spp", row.spp},
+                                                   {"samples", row.samples}});
+        for (const Metric& metric : metrics_of(profile.report))
+            out["metrics"][metric.name] = to_json(metric.value(row));
+    }
+    // A name that is no UTF-8 shows U+FFFD instead of ending the program.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string to_csv(const ProfilerReport& profile) {
+    const std::vector<Metric> metrics = metrics_of(profile.report);
+    std::string csv = "scene,strategy,sequence,parameters,thread_map,gpu,group,spp,samples";
+    for (const Metric& metric : metrics) csv += fmt::format(",{}", metric.name);
+    csv += '\n';
+    for (const Row& row : profile.report.rows) {
+        for (const auto* name :
+             {&row.scene, &row.strategy, &row.sequence, &row.parameters, &row.thread_map, &row.gpu, &row.group})
+            csv += csv_field(*name) + ',';
+        csv += fmt::format("{},{}", row.spp, fmt::join(row.samples, " "));
+        for (const Metric& metric : metrics) csv += ',' + to_string(metric.value(row), -1, "");
+        csv += '\n';
+    }
+    return csv;
 }
 
 }  // namespace raycache::cachesim

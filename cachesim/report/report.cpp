@@ -61,6 +61,8 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     draft.sector_bytes = row.sector_bytes = series.sector_bytes;
     row.levels = series.levels;
     for (const Counters& c : group.by_launch) row.totals += c;
+    row.loads = group.loads;
+    row.stores = group.stores;
 
     row.rays = ratio_of_totals(draft.sums(&Counters::rays, nullptr));
     row.steps_per_ray = ratio_of_totals(draft.sums(&Counters::steps, &Counters::rays));

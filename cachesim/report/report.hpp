@@ -49,7 +49,8 @@ struct Row {
     std::uint32_t sector_bytes = 32;
     std::size_t levels = 2;
     std::vector<std::uint32_t> samples;
-    Counters totals;  ///< over all sample indices; in groups by object, `rays` are those of the whole launch
+    Counters totals;         ///< over all sample indices; in groups by object, `rays` are those of the whole launch
+    Counters loads, stores;  ///< of totals: what reads and what writes; sorts are neither
     Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
         dram_bytes_per_ray;
     /// As profilers count: every load asks for its sectors, so most requests of a visit hit (LoadCounter).
@@ -81,9 +82,5 @@ Report make_report(const std::vector<Series>&, const std::string& baseline, Grou
 std::string to_text(const Report&);
 std::string to_json(const Report&);
 std::string to_csv(const Report&);
-
-/// The totals of every row under the names of Nsight Compute's metrics, to be laid beside a profile. All GPUs must have
-/// two levels.
-std::string to_profiler_text(const Report&);
 
 }  // namespace raycache::cachesim

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "cachesim/report/csv_field.hpp"
 #include "cachesim/report/estimate.hpp"
 #include "cachesim/report/pairing.hpp"
 #include "cachesim/report/table.hpp"
@@ -286,8 +287,9 @@ std::string to_csv(const TimedReport& report) {
     for (const TimedRow& row : report.rows) {
         const TimedStatistics& t = row.totals;
         const TimedSeries& s = row.series;
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", s.scene, s.strategy, s.sequence,
-                            s.thread_map, s.gpu, s.spp, t.cycles, t.seconds, row.cycles_per_ray.mean,
+        for (const std::string* name : {&s.scene, &s.strategy, &s.sequence, &s.thread_map, &s.gpu})
+            text += csv_field(*name) + ',';
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}", s.spp, t.cycles, t.seconds, row.cycles_per_ray.mean,
                             row.speed_up ? fmt::format("{}", row.speed_up->mean) : "", t.rays, t.warp_accesses,
                             t.lane_accesses, t.instructions, t.loads);
         for (const LevelAnswers* a : {&t.l1, &t.l2, &t.l3})

@@ -114,6 +114,23 @@ TEST_CASE("the sentence does not claim what the sample indices do not show") {
     CHECK_THAT(sentence(explanation({counters(10, 400, 80, 640, 0, 0)}, {plain})), Contains("no ratio"));
 }
 
+TEST_CASE("the sentence says that there is no difference where there is none") {
+    CHECK(sentence(explanation({plain}, {plain})) ==
+          "There is no difference: clever reads as many DRAM bytes per ray as plain, 256.0, and as many L2-to-L1 "
+          "bytes.");
+    CHECK_THAT(sentence(explanation({plain, better}, {plain, better})), StartsWith("There is no difference: "));
+    Counters other = plain;
+    other.l2_sectors /= 2;
+    CHECK_THAT(sentence(explanation({plain}, {other})),
+               StartsWith("clever reads as many DRAM bytes per ray as plain (256.0 against 256.0) and 50.0 % fewer"));
+    Counters base = plain;
+    base.dram_sectors = 1'000'000;
+    other = base;
+    other.dram_sectors += 1;
+    CHECK_THAT(sentence(explanation({base}, {other})),
+               StartsWith("clever reads 0.0001 % more DRAM bytes per ray than"));
+}
+
 TEST_CASE("an explanation of nothing is still a text") {
     const std::string text = to_text(explanation({Counters{}}, {Counters{}}));
     CHECK_THAT(text, !Contains("nan") && !Contains("inf"));

@@ -225,6 +225,19 @@ TEST_CASE("a user's GPU file is read from a path") {
     std::ofstream(path) << good;
     CHECK(load_gpu(path.string()).name == "tiny");
     std::filesystem::remove(path);
+    CHECK(is_gpu_file(path.string()));
+    CHECK_FALSE(is_gpu_file("h100"));
+}
+
+TEST_CASE("the name of a GPU says what was changed, the last value of each key in the order of the keys") {
+    const auto name = [](const std::vector<std::string>& changes) { return parse_gpu(good, "f.toml", changes).name; };
+    CHECK(name({}) == "tiny");
+    CHECK(name({"warps_per_sm=8", "l1.ways=2"}) == "tiny (l1.ways=2, warps_per_sm=8)");
+    CHECK(name({"l1.ways=2", "warps_per_sm = 8"}) == "tiny (l1.ways=2, warps_per_sm=8)");
+    CHECK(name({"l1.ways=0x10", "l2.policy='fifo'"}) == "tiny (l1.ways=16, l2.policy=fifo)");
+    CHECK(name({"l2.policy=fifo", "l2.policy=lru"}) == "tiny (l2.policy=lru)");
+    CHECK(name({"name=mine", "sms=4"}) == "mine (sms=4)");
+    CHECK(name({"l1.index=parity", "l1.index_masks=[128, 0x100]"}) == "tiny (l1.index=parity, l1.index_masks=128 256)");
 }
 
 TEST_CASE("a [timing] that contradicts itself is refused with line and key") {

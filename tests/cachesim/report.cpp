@@ -6,51 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "tests/cachesim/series.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
+using namespace raycache::cachesim::test;
 
 namespace {
-
-Counters counters(std::uint64_t rays, std::uint64_t steps, std::uint64_t accesses, std::uint64_t sectors,
-                  std::uint64_t l2, std::uint64_t dram) {
-    Counters c;
-    c.rays = rays;
-    c.steps = c.lane_accesses = steps;
-    c.warp_accesses = accesses;
-    c.sectors = sectors;
-    c.l2_sectors = l2;
-    c.l1_hits = sectors - l2;
-    c.dram_sectors = dram;
-    c.l2_hits = l2 - dram;
-    return c;
-}
-
-/// Camera nodes, half as much again for shadow triangles.
-LaunchStatistics launch(std::uint32_t sample, Counters c) {
-    RayGroup camera, shadow;
-    camera.rays = c.rays;
-    c.rays = 0;
-    camera.by_kind[0] = c;
-    shadow.ray = traces::RayType::shadow;
-    shadow.rays = camera.rays / 2;
-    shadow.by_kind[1] =
-        counters(0, c.steps / 2, c.warp_accesses / 2, c.sectors / 2, c.l2_sectors / 2, c.dram_sectors / 2);
-    return {sample, {camera, shadow}};
-}
-
-Series series(const std::string& strategy, std::vector<LaunchStatistics> launches) {
-    Series s;
-    s.scene = "room";
-    s.strategy = strategy;
-    s.sequence = "sobol";
-    s.thread_map = "tile";
-    s.gpu = "gtx-980-ti";
-    s.spp = 64;
-    s.launches = std::move(launches);
-    return s;
-}
 
 std::vector<Series> two_strategies() {
     return {series("rotation", {launch(0, counters(1000, 40000, 6000, 50000, 24000, 3000)),
@@ -225,28 +188,6 @@ TEST_CASE("with three levels the product of the factors is the traffic ratio, an
     };
     CHECK(commas(0) == commas(csv.find('\n') + 1));
     CHECK_THAT(csv, Catch::Contains("l3_bytes_per_ray"));
-}
-
-TEST_CASE("the counters of a profiler are as computed by hand") {
-    Counters c = counters(100, 4000, 800, 8000, 4000, 1000);
-    c.loads = 3200;
-    c.l1_requests = 16000;
-    const std::string text = to_profiler_text(
-        make_report({series("a", {{0, {RayGroup{traces::RayType::camera, 0, {c}, 100}}}})}, "", GroupBy::none));
-    for (const char* line :
-         {"room, a, N 64, gtx-980-ti ", "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum 16000",
-          "l1tex__t_sector_hit_rate.pct 75.00",  // 4000 of 16000 miss
-          "l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio 5.00",
-          "l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum 4000", "lts__t_sectors_srcunit_tex_lookup_hit.sum 3000",
-          "lts__t_sectors_srcunit_tex_lookup_miss.sum 1000", "lts__t_sector_hit_rate.pct 75.00",
-          "dram__bytes_read.sum 32000", "smsp__thread_inst_executed_per_inst_executed.ratio 5.00"}) {
-        std::string squeezed;
-        for (const char letter : text)
-            if (letter != ' ' || squeezed.back() != ' ') squeezed += letter;
-        CHECK_THAT(squeezed, Catch::Contains(line));
-    }
-    CHECK(to_profiler_text(make_report({series("a", {launch(0, {})})}, "", GroupBy::none)).find("nan") ==
-          std::string::npos);
 }
 
 TEST_CASE("a report of nothing still prints") {

@@ -3,7 +3,7 @@
 from support import PICTURE, SCENE, ProgramTest, main
 
 HEAD = "-kernel name = k\n-grid dim = (1,1,1)\n-block dim = (32,1,1)\n-accelsim tracer version = 5\n\n#traces format = x\n\n"
-COUNTERS = ("lane_accesses", "warp_accesses", "sectors", "l1_hits", "l2_sectors", "l2_hits", "dram_sectors")
+COUNTERS = ("lane_accesses", "warp_accesses", "loads", "l1_requests", "sectors", "l1_hits", "l2_sectors", "l2_hits", "dram_sectors")
 
 
 class AccelSim(ProgramTest):
@@ -19,6 +19,12 @@ class AccelSim(ProgramTest):
             self.succeeds("export", trace, "--format", "accel-sim", "--warps-per-cta", "7", "-o", target)
             self.succeeds("import", kernel, "--fuse", "-o", "back.rct")
             self.assertEqual(self.totals("back.rct"), expected)
+        self.succeeds("import", "k.traceg.xz", "-o", "back.rct")
+        split = self.totals("back.rct")
+        self.assertEqual([split[key] for key in ("loads", "l1_requests")],
+                         [expected[key] for key in ("loads", "l1_requests")])
+        self.assertEqual([split[key] for key in ("warp_accesses", "sectors")],
+                         [expected[key] for key in ("loads", "l1_requests")])
 
     def test_malformed_lines_are_refused_with_their_number(self):
         load = "0000 00000003 1 R4 LDG.E.SYS 1 R4 4 1 0x1000 4 0\n"

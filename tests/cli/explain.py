@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """raycache explain: the identity, miss classes, sharing, heat maps, and what it refuses."""
 import struct
+import zlib
 
 from support import GPU, LAUNCHES, SCENE, ProgramTest, main
 
@@ -17,6 +18,27 @@ def exr_channels(data):
         names.append(data[at:end].decode())
         at = end + 1 + 16
     return names
+
+
+def png_rows(data):
+    """The scan lines of an RGB picture of 8 bits, filters undone."""
+    width, height = struct.unpack(">II", data[16:24])
+    at, stream = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        stream += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
+        at += 12 + length
+    raw, size = zlib.decompress(stream), 3 * width
+    rows, above = [], bytes(size)
+    for y in range(height):
+        kind, row = raw[y * (size + 1)], bytearray(raw[y * (size + 1) + 1:(y + 1) * (size + 1)])
+        for i in range(size if kind else 0):
+            left, up, corner = (row[i - 3], above[i], above[i - 3]) if i >= 3 else (0, above[i], 0)
+            nearest = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            row[i] = (row[i] + (left, up, (left + up) // 2, nearest)[kind - 1]) & 255
+        above = bytes(row)
+        rows.append(above)
+    return rows
 
 
 class Explain(ProgramTest):
@@ -111,7 +133,8 @@ class Explain(ProgramTest):
         report = self.succeeds("explain", trace, trace, *GPU, "--counts-only", "--json").json
         self.assertEqual({factor["factor"] for factor in report["factors"].values()}, {1})
         self.assertEqual(report["base"]["levels"], report["other"]["levels"])
-        self.succeeds("explain", trace, trace, *GPU, "--counts-only")
+        text = self.succeeds("explain", trace, trace, *GPU, "--counts-only").text
+        self.assertIn("There is no difference: other reads as many DRAM bytes per ray as base", text)
 
     def test_a_heat_map_is_an_exr_of_six_channels_and_a_png_beside_it(self):
         printed = self.explained("--heatmap", "why.exr", "--threads", "2").text
@@ -127,6 +150,19 @@ class Explain(ProgramTest):
         first = exr, png
         self.explained("--heatmap", "why.exr", "--threads", "1")
         self.assertEqual((self.path("why.exr").read_bytes(), self.path("why.png").read_bytes()), first)
+
+    def test_no_label_of_a_heat_map_is_cut_off_however_long_the_names(self):
+        sizes = []
+        for changes in ([], ["--set", "l1.ways=2", "--set", "l1.policy=fifo", "--set", "l2.policy=tree_plru",
+                             "--set", "l2.slice_hash=modulo", "--warps-per-sm", "16"]):
+            self.explained("--heatmap", "why.exr", *changes)
+            rows = png_rows(self.path("why.png").read_bytes())
+            self.assertEqual(set(rows[0]), {255})
+            self.assertEqual({value for row in rows for value in row[-3 * 8:]}, {255})  # nothing reaches the edge
+            self.assertTrue(all(set(row) == {255} for row in rows[-8:]))
+            sizes.append((len(rows), len(rows[0])))
+        self.assertEqual(sizes[0][1], sizes[1][1])
+        self.assertGreater(sizes[1][0], sizes[0][0])
 
     def test_a_warp_of_one_pixel_has_a_heat_map_too(self):
         self.succeeds(*FUSED, "--thread-map", "samples", "--heatmap", "s.exr")

@@ -2,7 +2,7 @@
 """raycache export: what a cache is asked, for other tools."""
 import csv
 
-from support import ProgramTest, main
+from support import PICTURE, SCENE, ProgramTest, main
 
 H100 = ["--gpu", "h100"]
 
@@ -65,21 +65,49 @@ policy = "fifo"
         self.path("few.toml").write_text(head + "".join(levels))
         missing = 0
         for core in (0, 1):
-            self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l2", "--sm", core, "--format", "csv", "-o",
-                          "x.csv")
+            self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l2", "--sm", core, "--launch", "0",
+                          "--format", "csv", "-o", "x.csv")
             missing += sum(line.endswith(",0") for line in self.path("x.csv").read_text("ascii").splitlines())
-        self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l3", "--format", "u64", "-o", "l3.u64")
+        self.succeeds("export", trace, "--gpu", "few.toml", "--level", "l3", "--launch", "0", "--format", "u64", "-o",
+                      "l3.u64")
         self.assertEqual(self.path("l3.u64").stat().st_size, 8 * missing)
         self.assertGreater(missing, 0)
 
     def test_dinero_and_u64_files_hold_the_same_sectors_and_nothing_is_printed(self):
         trace = self.capture()
         for form in ("dinero", "u64"):
-            self.assertEqual(self.succeeds("export", trace, *H100, "--sm", "3", "--format", form, "-o", form).stdout, b"")
+            done = self.succeeds("export", trace, *H100, "--sm", "3", "--launch", "0", "--format", form, "-o", form)
+            self.assertEqual(done.stdout, b"")
         words = self.path("u64").read_bytes()
         wanted = "".join(f"0 {int.from_bytes(words[i:i + 8], 'little'):x}\n" for i in range(0, len(words), 8))
         self.assertEqual(self.path("dinero").read_text(), wanted)
         self.assertGreater(len(words), 8000)
+
+    def test_of_several_launches_the_first_is_exported_with_a_warning_unless_one_is_asked_for(self):
+        trace = self.capture()
+        samples = self.succeeds("info", trace, "--json").json["sample indices"]
+        for form in (["u64", *H100, "--level", "l2"], ["accel-sim"]):
+            export = ["export", trace, "--format", *form, "-o"]
+            name = "x.traceg" if form[0] == "accel-sim" else "x"
+            warning = self.warns(*export, name).stderr
+            self.assertIn(f"only launch 0 of 2 is exported, sample index {samples[0]}; choose with --launch", warning)
+            default = self.path(name).read_bytes()
+            self.succeeds(*export, name, "--launch", "0")
+            self.assertEqual(self.path(name).read_bytes(), default)
+            self.succeeds(*export, name, "--launch", "1")
+            self.assertNotEqual(self.path(name).read_bytes(), default)
+        self.succeeds("capture", *SCENE, *PICTURE, "--trace-samples", "1", "-o", "one.rct")
+        self.succeeds("export", "one.rct", *H100, "--level", "l2", "--format", "u64", "-o", "x")
+
+    def test_a_changed_gpu_is_asked_what_a_file_with_these_values_is_asked(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        export = ["export", trace, "--sm", "0", "--launch", "0", "--format", "csv", "-o"]
+        self.succeeds(*export, "plain.csv", *H100)
+        self.succeeds(*export, "changed.csv", *H100, "--set", "l1.ways=1", "--warps-per-sm", "8")
+        self.succeeds(*export, "same.csv", *H100, "--set", "l1.ways=1", "--set", "warps_per_sm=8")
+        self.assertEqual(self.path("changed.csv").read_bytes(), self.path("same.csv").read_bytes())
+        self.assertNotEqual(self.path("changed.csv").read_bytes(), self.path("plain.csv").read_bytes())
+        self.refuses(2, "export", trace, "--format", "accel-sim", "--set", "l1.ways=1", "-o", "x", mentions=["--set"])
 
     def test_a_choice_that_does_not_exist_is_refused(self):
         trace = self.capture()

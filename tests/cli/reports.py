@@ -2,11 +2,12 @@
 """What compare and replay print: groups, baseline, formats, saved files, and where warnings go."""
 import csv
 import io
+import json
 import os
 import pty
 import subprocess
 
-from support import GPU, LAUNCHES, PICTURE, RAYCACHE, SCENE, ProgramTest, main
+from support import GPU, LAUNCHES, PICTURE, RAYCACHE, ROOT, SCENE, ProgramTest, main
 
 COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU]
 
@@ -68,9 +69,61 @@ class Reports(ProgramTest):
         self.assertEqual(len(values), 9)
         self.assertGreater(totals["l1_requests"], totals["sectors"])
         self.assertEqual(self.succeeds(*COMPARE, "--counters", "ncu").text.count("dram__bytes_read.sum"), 3)
-        self.refuses(2, "replay", trace, *GPU, "--counters", "ncu", "--json", mentions=["--counters"])
         self.refuses(2, "replay", trace, *GPU, "--counters", "nvprof", mentions=["--counters", "nvprof"])
         self.refuses(2, "replay", trace, "--gpu", "xeon-8380", "--counters", "ncu", mentions=["xeon-8380", "two levels"])
+
+    def test_the_counters_of_a_profiler_come_in_every_format(self):
+        trace = self.capture()
+        counters = ["replay", trace, *GPU, "--counters", "ncu", "--by", "ray"]
+        printed = self.succeeds(*counters, "--save", "ncu").text
+        rows = self.succeeds(*counters, "--json").json["rows"]
+        table = self.succeeds(*counters, "--csv").text
+        self.assertEqual(self.path("ncu.txt").read_text("utf-8"), printed)
+        self.assertEqual(json.loads(self.path("ncu.json").read_text("utf-8"))["rows"], rows)
+        self.assertEqual(self.path("ncu.csv").read_text("utf-8"), table)
+        lines = list(csv.DictReader(io.StringIO(table)))
+        self.assertEqual([line["group"] for line in lines], ["camera", "bounce", "shadow"])
+        for row, line in zip(rows, lines, strict=True):
+            for name, value in row["metrics"].items():
+                self.assertEqual(value, float(line[name]), name)
+                self.assertIn(name, printed)
+            self.assertEqual(row["group"], line["group"])
+
+    def test_stores_and_sorts_of_a_wavefront_have_names_of_their_own(self):
+        wave = ["--strategy", "cranley-patterson+morton"]
+        totals = self.succeeds(*COMPARE, *wave, "--json").json["rows"][0]["totals"]
+        metrics = self.succeeds(*COMPARE, *wave, "--counters", "ncu", "--json").json["rows"][0]["metrics"]
+        self.assertEqual(metrics["dram__bytes.sum"], 32 * totals["dram_sectors"])
+        self.assertEqual(metrics["dram__bytes_write.sum"], 32 * totals["written_sectors"])
+        self.assertEqual(metrics["dram__bytes_read.sum"],
+                         32 * (totals["dram_sectors"] - totals["written_sectors"] - totals["sort_sectors"]))
+        self.assertGreater(totals["sort_sectors"], 0)
+        stores = {row["group"]: row["totals"] for row in
+                  self.succeeds(*COMPARE, *wave, "--by", "object", "--json").json["rows"]}
+        written = sum(stores[kind + " write"]["l2_sectors"] for kind in ("ray state", "hit", "queue"))
+        self.assertEqual(metrics["lts__t_sectors_op_write.sum"], written)
+        self.assertEqual(metrics["l1tex__m_l1tex2xbar_write_sectors_mem_lg_op_st.sum"], written)
+        self.assertEqual(metrics["l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum"],
+                         totals["l2_sectors"] - written - stores["sort"]["l2_sectors"])
+
+    def test_a_changed_gpu_is_named_so_in_every_format(self):
+        name = "gtx-980-ti (l1.ways=2, warps_per_sm=24)"
+        changed = ["--strategy", "coherent", "--set", "l1.ways=2", "--warps-per-sm", "24"]
+        for more in ([], ["--timed"], ["--counters", "ncu"]):
+            with self.subTest(more):
+                self.assertIn(name, self.succeeds(*COMPARE, *changed, *more).text)
+                self.assertEqual(self.succeeds(*COMPARE, *changed, *more, "--json").json["rows"][0]["gpu"], name)
+                line, = csv.DictReader(io.StringIO(self.succeeds(*COMPARE, *changed, *more, "--csv").text))
+                self.assertEqual(line["gpu"], name)
+        self.assertNotIn("(", self.succeeds(*COMPARE, "--strategy", "coherent", "--json").json["rows"][0]["gpu"])
+
+    def test_a_gpu_without_timing_is_refused_before_the_scene_is_touched(self):
+        preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
+        self.path("untimed.toml").write_text(preset[:preset.index("[timing]")])
+        for command in (["compare", "--scene", "missing.glb", "--timed"], ["sweep", "missing.glb"],
+                        ["quality", "missing.glb"]):
+            with self.subTest(command[0]):
+                self.refuses(1, *command, "--gpu", "untimed.toml", mentions=["untimed.toml: ", "[timing]"])
 
     def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
         command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]

@@ -4,13 +4,13 @@ import os
 import struct
 import subprocess
 
-from support import GPU_FILE, RAYCACHE, SCENE, ProgramTest, main
+from support import GPU_FILE, RAYCACHE, ROOT, SCENE, ProgramTest, main
 
 
-def rtwarp(records, magic=b"RTWARP01"):
+def rtwarp(records, magic=b"RTWARP01", nodes=0x7F5000000000):
     """One warp of these (tag, mask, indices), as the bytes of a file."""
     body = b"".join(struct.pack("<BI%dI" % len(indices), tag, mask, *indices) for tag, mask, indices in records)
-    head = struct.pack("<8sIIIIIIfIIIQQ", magic, 64, 1, 8, 4, 38, 64, 0.0, 1, 64, 48, 0x7F5000000000, 0x7F5000815000)
+    head = struct.pack("<8sIIIIIIfIIIQQ", magic, 64, 1, 8, 4, 38, 64, 0.0, 1, 64, 48, nodes, 0x7F5000815000)
     return head + struct.pack("<II", len(records), len(body)) + body
 
 
@@ -73,6 +73,18 @@ class Timed(ProgramTest):
                                    (2, "l1.policy='lru", "KEY=VALUE"), (1, "l1.allocate=never", "on_fill")):
             self.refuses(code, "replay", trace, "--gpu", "v100", "--set", change, mentions=[word])
 
+    def test_what_a_users_file_lacks_in_time_is_said_in_its_name(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
+        self.path("mine.toml").write_text(preset)
+        self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed")
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.accesses_in_flight=64",
+                     mentions=["mine.toml: ", "(timing.accesses_in_flight=64)", "expected at most 64 for each"])
+        self.refuses(1, "explain", "--scene", "missing.glb", "--gpu", "mine.toml", "--set",
+                     "timing.accesses_in_flight=64", mentions=["mine.toml: ", "expected at most 64 for each"])
+        self.path("mine.toml").write_text(preset[:preset.index("[timing]")])
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", mentions=["mine.toml: ", "[timing]"])
+
     def test_options_that_exclude_each_other_are_refused(self):
         trace = self.capture("trace.rct", "--bounces", "0")
         self.refuses(2, "replay", trace, "--gpu", "v100", "--timed", "--by", "bounce")
@@ -94,6 +106,15 @@ class Rtwarp(ProgramTest):
         for content in bad.values():
             self.path("bad.rtw").write_bytes(content)
             self.refuses(1, "import", "bad.rtw", "-o", "bad.rct", mentions=["bad.rtw"])
+
+    def test_objects_beyond_the_addresses_of_a_trace_are_refused_in_the_files_own_name(self):
+        for nodes in (1 << 48, (1 << 64) - (1 << 21), (1 << 64) - 64):
+            self.path("far.rtw").write_bytes(rtwarp([(0, 0x3, [0, 1])], nodes=nodes))
+            self.refuses(1, "import", "far.rtw", "-o", "far.rct",
+                         mentions=["far.rtw: offset", "below address 2^48", f"{nodes:#x}"])
+        for index in ((1 << 30) - 1, (1 << 30) - 2):  # the second is none too many, but the file's base moves it
+            self.path("many.rtw").write_bytes(rtwarp([(0x40, 0x1, [index])]))
+            self.refuses(1, "import", "many.rtw", "-o", "many.rct", mentions=["many.rtw: offset", str(index)])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,10 @@
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <fstream>
+#include <thread>
 
 #include "files.hpp"
 #include "samples.hpp"
@@ -112,13 +115,43 @@ TEST_CASE("a folder that does not exist is named") {
                Contains("/nowhere/at/all.csv.partial") && Contains("No such file or directory"));
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "taken");
-    CHECK_THAT(refusal([&] {
-                   OutputFile file(folder / "taken");
-                   file.write("x");
-                   file.commit();
-               }),
-               Contains("giving the file its name"));
+    CHECK_THAT(refusal([&] { OutputFile(folder / "taken"); }), Contains("taken") && Contains("Is a directory"));
     CHECK(!std::filesystem::exists(folder / "taken.partial"));
+}
+
+TEST_CASE("an output that is a link stays one: what it leads to is replaced") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "far");
+    write_file(folder / "far/there.txt", {'o', 'l', 'd'});
+    std::filesystem::create_symlink("far/there.txt", folder / "near.txt");
+    std::filesystem::create_symlink("near.txt", folder / "nearer.txt");
+    std::filesystem::create_symlink("far/new.txt", folder / "dangling.txt");
+    for (const auto& [link, target] : {std::pair{"nearer.txt", "far/there.txt"}, {"dangling.txt", "far/new.txt"}}) {
+        OutputFile file(folder / link);
+        file.write("new");
+        CHECK(OutputFile::partial_name(folder / link) == folder / target + ".partial");
+        file.commit();
+        CHECK(std::filesystem::is_symlink(folder / link));
+        CHECK(read_file(folder / target) == std::vector<std::uint8_t>{'n', 'e', 'w'});
+    }
+}
+
+TEST_CASE("a named pipe is written to directly and stays one") {
+    const TemporaryFolder folder;
+    const std::string pipe = folder / "pipe";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    std::string received;
+    std::thread reader([&] { std::getline(std::ifstream(pipe), received); });
+    {
+        OutputFile file(pipe);
+        file.write("through the pipe\n");
+        CHECK(!std::filesystem::exists(pipe + ".partial"));
+        file.commit();
+    }
+    reader.join();
+    CHECK(received == "through the pipe");
+    CHECK(std::filesystem::is_fifo(pipe));
+    CHECK(OutputFile::partial_name(pipe).empty());
 }
 
 TEST_CASE("records that break the rules are refused before they are written") {

@@ -11,4 +11,10 @@ const std::vector<BuiltinScene>& builtin_scenes() {
     return scenes;
 }
 
+const BuiltinScene* find_builtin_scene(const std::string& name) {
+    for (const BuiltinScene& builtin : builtin_scenes())
+        if (builtin.name == name) return &builtin;
+    return nullptr;
+}
+
 }  // namespace raycache::tracer

@@ -83,7 +83,7 @@ std::uint64_t hash_of(const GltfDocument& document, const std::vector<GltfImageB
     add(document.container.bytes);
     for (const auto bytes : document.external_buffers) add(bytes);
     for (const GltfImageBytes& image : images)
-        if (image.external) add(image.bytes);
+        if (!image.file.empty()) add(image.bytes);
     return XXH3_64bits_digest(state.get());
 }
 
@@ -109,6 +109,10 @@ Scene load(const GltfReport& report) {
 
     const std::vector<GltfImageBytes> images = read_gltf_images(document, materials.images, report);
     scene.hash = hash_of(document, images);
+    scene.files = document.files;
+    scene.files.push_back(report.path());
+    for (const GltfImageBytes& image : images)
+        if (!image.file.empty()) scene.files.push_back(image.file);
     scene.textures = decode_gltf_textures(images, scene.materials, report);
     scene.cameras = read_gltf_cameras(document, nodes.cameras, report);
     if (scene.cameras.empty()) scene.cameras.push_back(overview_camera(scene.bounds()));

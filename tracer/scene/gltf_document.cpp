@@ -142,7 +142,10 @@ void read_buffers(const json& descriptions, GltfDocument& document, const GltfRe
         if (const auto uri = string_member(descriptions[i], "uri")) {
             document.owned_buffers.push_back(read_buffer_uri(*uri, where, report));
             content = document.owned_buffers.back();
-            if (!is_data_uri(*uri)) document.external_buffers.push_back(content);
+            if (!is_data_uri(*uri)) {
+                document.external_buffers.push_back(content);
+                document.files.push_back(*resolve_relative_uri(report.path(), *uri));
+            }
         } else if (i == 0 && document.container.bin) {
             content = *document.container.bin;
         } else {

@@ -26,7 +26,8 @@ struct GltfDocument {
     tinygltf::Model model;
     std::vector<std::span<const std::uint8_t>> buffers;           ///< one per buffer, exactly its byteLength
     std::vector<std::vector<std::uint8_t>> owned_buffers;         ///< what data: URIs and external files held
-    std::vector<std::span<const std::uint8_t>> external_buffers;  ///< those of `owned_buffers` that were files
+    std::vector<std::span<const std::uint8_t>> external_buffers;  ///< those of `owned_buffers` that were files,
+    std::vector<std::string> files;                               ///< and these files
     std::vector<GltfImage> images;
 };
 

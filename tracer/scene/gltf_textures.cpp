@@ -28,7 +28,7 @@ void read_image(const GltfDocument& document, const GltfImage& image, GltfImageB
         const auto path = resolve_relative_uri(report.path(), *image.uri);
         if (!path) throw Error("its URI is not a relative path");
         result.owned = read_regular_file(*path, "image");
-        result.external = true;
+        result.file = *path;
     }
     result.bytes = result.owned;
 }

@@ -16,7 +16,7 @@ struct GltfImageBytes {
     std::string name;
     std::span<const std::uint8_t> bytes;
     std::vector<std::uint8_t> owned;  ///< behind `bytes` unless they lie in a buffer
-    bool external = false;            ///< came from a file of its own
+    std::string file;                 ///< its own, if it has one
     std::string problem;
 };
 

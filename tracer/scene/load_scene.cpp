@@ -135,11 +135,9 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
 }  // namespace
 
 Scene load_scene(const SceneRequest& request, const Warn& warn) {
-    const auto& builtins = builtin_scenes();
-    const auto builtin =
-        std::find_if(builtins.begin(), builtins.end(), [&](const BuiltinScene& b) { return b.name == request.source; });
-    Scene scene = builtin != builtins.end() ? build(*builtin, request.detail) : load_file(request, warn);
-    if (builtin == builtins.end()) light_file(scene, request, warn);
+    const BuiltinScene* builtin = find_builtin_scene(request.source);
+    Scene scene = builtin ? build(*builtin, request.detail) : load_file(request, warn);
+    if (!builtin) light_file(scene, request, warn);
     if (request.sky == SceneRequest::Sky::off) {
         scene.sky = {0, 0, 0};
         scene.sun.reset();

@@ -58,8 +58,9 @@ struct Sun {
 };
 
 struct Scene {
-    std::string name;        ///< file name without folder, or "courtyard(detail=…)"
-    std::uint64_t hash = 0;  ///< XXH3-64 of the source bytes (a .gltf: of its buffers and images too)
+    std::string name;                ///< file name without folder, or "courtyard(detail=…)"
+    std::uint64_t hash = 0;          ///< XXH3-64 of the source bytes (a .gltf: of its buffers and images too)
+    std::vector<std::string> files;  ///< that it was read from; none of a built-in scene
 
     std::vector<Vec3> positions;         ///< world space, all finite
     std::vector<Vec3> normals;           ///< unit, one per position, or empty if no mesh has any; (0,0,0) = face normal
@@ -107,5 +108,7 @@ struct BuiltinScene {
 };
 /// The registry of procedural scenes.
 const std::vector<BuiltinScene>& builtin_scenes();
+/// The one of this name, or nullptr.
+const BuiltinScene* find_builtin_scene(const std::string& name);
 
 }  // namespace raycache::tracer

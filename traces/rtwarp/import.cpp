@@ -127,7 +127,11 @@ Header read_header(Input& in) {
         if (region.stride == 0 || region.stride > 4096)
             in.fail(fmt::format("expected objects of 1 to 4096 bytes, found {}", region.stride));
     }
-    for (Region& region : header.regions) region.base = in.take<std::uint64_t>();
+    for (Region& region : header.regions) {
+        region.base = in.take<std::uint64_t>();
+        if (region.base >= format::max_address)
+            in.fail(fmt::format("expected objects below address 2^48, found them at {:#x}", region.base));
+    }
     header.regions[1].kind = ObjectKind::triangle;
     return header;
 }
@@ -150,7 +154,8 @@ WarpTrace read_warp(Input& in, std::uint32_t number, Header& header) {
         Region& region = header.regions[record.region];
         for (unsigned lane = 0; lane < record.lanes(); ++lane) {
             const auto element = in.take<std::uint32_t>();
-            if (element >= 1u << 30) in.fail(fmt::format("expected an index below 2^30, found {}", element));
+            if (element >= format::max_elements)
+                in.fail(fmt::format("expected an index below 2^30 - 1, found {}", element));
             warp.elements.push_back(element);
             region.count = std::max(region.count, element + 1);
         }
@@ -166,6 +171,9 @@ void align(Region& region, std::vector<WarpTrace>& warps, std::uint8_t number, I
                             region.stride, region.base));
     const auto skipped = static_cast<std::uint32_t>(beyond / region.stride);
     if (skipped == 0) return;
+    if (region.count > format::max_elements - skipped)
+        in.fail(fmt::format("expected indices below {} from address {:#x} on, found {}", format::max_elements - skipped,
+                            region.base, region.count - 1));
     region.base -= beyond;
     region.count += skipped;
     for (WarpTrace& warp : warps) {

@@ -1,0 +1,114 @@
+#include "tools/report_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cachesim/report/profiler.hpp"
+#include "tools/console.hpp"
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+
+namespace raycache::tools {
+namespace {
+
+cachesim::GroupBy parse_by(const std::string& text) {
+    if (text == "none") return cachesim::GroupBy::none;
+    if (text == "bounce") return cachesim::GroupBy::bounce;
+    if (text == "ray") return cachesim::GroupBy::ray;
+    if (text == "object") return cachesim::GroupBy::object;
+    throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
+}
+
+void save_text(const std::string& path, const std::string& text) {
+    traces::OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+template <class Series>
+std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
+    const std::string usual = "cranley-patterson";
+    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
+    const bool has_usual =
+        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
+    return asked.empty() && has_usual ? usual : asked;
+}
+
+template <class Report>
+void publish_report(const Report& report, const ReportOptions& o) {
+    using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
+    if (!o.save.empty()) {
+        save_text(o.save + ".txt", to_text(report));
+        save_text(o.save + ".json", to_json(report));
+        save_text(o.save + ".csv", to_csv(report));
+    }
+    print(o.json ? to_json(report) : o.csv ? to_csv(report) : to_text(report));
+}
+
+}  // namespace
+
+void ReportOptions::add(CLI::App& app, bool with_baseline) {
+    app.add_option("--gpu", gpus.names, "GPU preset or FILE.toml; may be repeated (see 'raycache list gpus')")
+        ->required()
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    gpus.add_changes(app);
+    app.add_flag("--timed", timed, "predict cycles: latencies, queues and bandwidths instead of order alone");
+    app.add_option(
+           "--by", by,
+           "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
+        ->capture_default_str();
+    if (with_baseline)
+        app.add_option("--baseline", baseline,
+                       "strategy that ratios refer to; default: cranley-patterson where it is compared");
+    app.add_flag("--json", json, "print JSON");
+    app.add_flag("--csv", csv, "print CSV");
+    app.add_option("--counters", counters,
+                   "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
+        ->check(CLI::IsMember({"ncu"}));
+    app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
+}
+
+std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) const {
+    check();
+    refuse_overwriting(inputs, outputs());
+    std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
+    if (timed) gpus.check_timed(loaded);
+    for (const cachesim::Gpu& gpu : loaded)
+        if (!counters.empty() && gpu.levels.size() != 2)
+            throw UsageError(
+                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}: Nsight "
+                            "Compute has no name for one between L1 and the shared L2",
+                            gpu.name, gpu.levels.size()));
+    return loaded;
+}
+
+void ReportOptions::check() const {
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
+    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
+    if (timed && by != "none")
+        throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
+    refuse_stdout("--save", save);
+    parse_by(by);
+}
+
+FileNames ReportOptions::outputs() const {
+    if (save.empty()) return {};
+    return {save + ".txt", save + ".json", save + ".csv"};
+}
+
+void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
+    const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
+    if (counters.empty())
+        publish_report(report, *this);
+    else
+        publish_report(cachesim::ProfilerReport{report}, *this);
+}
+
+void ReportOptions::publish(const std::vector<cachesim::TimedSeries>& series) const {
+    publish_report(cachesim::make_timed_report(series, baseline_of(series, baseline)), *this);
+}
+
+}  // namespace raycache::tools
