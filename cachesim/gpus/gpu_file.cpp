@@ -96,9 +96,9 @@ CacheGeometry read_cache(TomlReader& file, TomlReader::Section section, const st
     cache.fill_bytes = section.number_or("fill_bytes", cache.sector_bytes);
     cache.allocate = section.choice_or("allocate", allocations, cache.allocate);
     cache.carve_out_bytes = section.number_or("carve_out_bytes", cache.carve_out_bytes, true);
-    // Divided, not multiplied: limits.cpp refuses what would overflow later.
-    const std::uint64_t way_bytes = std::max<std::uint64_t>(1, cache.sets) * cache.slices * cache.line_bytes;
-    const std::uint64_t taken = (cache.carve_out_bytes + way_bytes - 1) / way_bytes;
+    std::uint64_t way_bytes = std::uint64_t{cache.slices} * cache.line_bytes;
+    if (cache.carve_out_bytes == 0 || __builtin_mul_overflow(way_bytes, cache.sets, &way_bytes)) return cache;
+    const std::uint64_t taken = cache.carve_out_bytes / way_bytes + (cache.carve_out_bytes % way_bytes != 0);
     if (taken >= cache.ways)
         file.fail_at(
             level + ".carve_out_bytes",

@@ -287,4 +287,55 @@ dram_gb_s = 256
     CHECK_THAT(message("schedulers = 4", ""), Contains("timing.schedulers") && Contains("add it"));
     CHECK_THAT(message("schedulers = 4", "sheduler = 4"), Contains("timing.sheduler") && Contains("unknown"));
     CHECK_THAT(message("l1_mshrs = 256", "l1_mshrs = 0"), Contains("timing.l1_mshrs"));
+    CHECK_THAT(message("clock_mhz = 1000", "clock_mhz = 1e9"), Contains("timing.clock_mhz"));
+    CHECK_THAT(message("node_instructions = 10", "node_instructions = 4000000000"),
+               Contains("timing.node_instructions") && Contains("100000"));
+    CHECK_THAT(message("l2_bytes_per_cycle = 32", "l2_bytes_per_cycle = 1e-9"), Contains("timing.l2_bytes_per_cycle"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 1e-9"), Contains("timing.dram_gb_s") && Contains("channels"));
+    CHECK_THAT(message("l2_latency = 200", "l2_latency = 200\nl2_far_latency = 300"),
+               Contains("timing.l2_far_latency") && Contains("l2_partitions"));
+    CHECK_THAT(message("l2_latency = 200", "l2_latency = 200\nl2_far_latency = 900\nl2_partitions = 2"),
+               Contains("timing.dram_latency") && Contains("far partitions"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 256\ndram_rcd = 3"), Contains("timing.dram_rcd: expected with"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 256\ndram_bank_bits = [7, 64]\ndram_mhz = 100"),
+               Contains("timing.dram_bank_bits") && Contains("64"));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 256\ndram_bank_bits = [7]"), Contains("timing.dram_mhz"));
+    CHECK_THAT(message("l1_latency = 30", "l1_latency = 3\noperand_collectors = 2"), Contains("timing.l1_latency"));
+    CHECK_THAT(message("schedulers = 4", "schedulers = 4\noperand_collectors = 33"),
+               Contains("timing.operand_collectors"));
+}
+
+TEST_CASE("what is carved out of a cache takes whole ways") {
+    const auto ways = [](const std::string& bytes) {
+        std::string text = good;
+        text.replace(text.find("ways = 3\n"), 9, "ways = 3\ncarve_out_bytes = " + bytes + "\n");
+        return parse_gpu(text, "f.toml").levels[0].ways;
+    };
+    CHECK(ways("0") == 3);
+    CHECK(ways("1") == 2);
+    CHECK(ways("512") == 2);  // 4 sets x 128 B
+    CHECK(ways("513") == 1);
+    using Catch::StartsWith;
+    CHECK_THAT(error("ways = 3\n", "ways = 3\ncarve_out_bytes = 1025\n"),
+               StartsWith("f.toml:10: l1.carve_out_bytes: expected to leave at least one of 3 ways"));
+    CHECK_THAT(error("sets = 4", "carve_out_bytes = 1\nsets = 144115188075855872"), Catch::Contains("l1.sets: "));
+}
+
+TEST_CASE("registers say how many warps are resident, unless the file does") {
+    const auto warps = [](const std::string& of_sm, const std::string& keys, const std::string& tables) {
+        std::string text = good;
+        text.replace(text.find("warps_per_sm = 4\n"), 17, of_sm);
+        return parse_gpu(keys + text + tables, "f.toml").warps_per_sm;
+    };
+    // 168 x 32 = 5376 = 21 x 256 registers of a warp; 65536 hold 12.
+    const std::string table = "[registers]\nper_sm = 65536\nper_thread = 168\n";
+    CHECK(warps("", "", table) == 12);
+    CHECK(warps("warps_per_sm = 6\n", "", table) == 6);
+    CHECK(warps("", "max_warps_per_sm = 9\n", table) == 8);  // whole CTAs of 2 warps
+    CHECK(warps("", "", table + "allocation = 8192\n") == 8);
+    CHECK_THAT(error("warps_per_sm = 4\n", ""), Catch::Contains("warps_per_sm"));
+    const std::string small = "[registers]\nper_sm = 1024\nper_thread = 32\n";
+    CHECK_THROWS_WITH(warps("", "", small), Catch::Contains("registers.per_thread: expected a CTA of 2 warps to fit"));
+    CHECK_THAT(error("warps_per_sm = 4\n", "warps_per_sm = 4\nmax_warps_per_sm = 2\n"),
+               Catch::Contains("warps_per_sm: expected at most the 2"));
 }
