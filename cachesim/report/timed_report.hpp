@@ -21,9 +21,11 @@ struct TimedSeries {
 
 struct TimedRow {
     TimedSeries series;
-    TimedStatistics totals;       ///< sums over all launches
-    std::string bottleneck;       ///< the resource in use most of the time; behind "latency" if that is not half of it
-    double bottleneck_share = 0;  ///< of that resource's time
+    TimedStatistics totals;    ///< sums over all launches
+    std::string busiest;       ///< the resource that is in use most of the time
+    double busiest_share = 0;  ///< of its time
+    /// Nothing is in use half of its time: latency is the bottleneck.
+    bool waits_most() const { return busiest_share < 0.5; }
     Estimate cycles_per_ray;
     /// The baseline's cycles over this row's; over the same scene, sequence, N, thread map and GPU.
     std::optional<Estimate> speed_up;

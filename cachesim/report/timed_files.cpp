@@ -1,0 +1,107 @@
+// A timed report as JSON and as CSV.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "cachesim/report/csv_field.hpp"
+#include "cachesim/report/timed_figures.hpp"
+
+namespace raycache::cachesim {
+
+using namespace figures;
+
+namespace {
+
+nlohmann::ordered_json json_of(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+nlohmann::ordered_json json_of(const std::optional<Estimate>& e) {
+    if (!e) return {};
+    nlohmann::ordered_json out{{"mean", json_of(e->mean)}, {"half_width", nullptr}};
+    if (e->half_width) out["half_width"] = json_of(*e->half_width);
+    return out;
+}
+nlohmann::ordered_json json_of(const LevelAnswers& a) {
+    return {{"requests", a.requests()},
+            {"hits", a.hits},
+            {"merges", a.merges},
+            {"line_misses", a.line_misses},
+            {"sector_misses", a.sector_misses},
+            {"hit_rate_merges_hit", json_of(hit_rate(a, true))},
+            {"hit_rate_merges_miss", json_of(hit_rate(a, false))}};
+}
+
+}  // namespace
+
+std::string to_json(const TimedReport& report) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const TimedRow& row : report.rows) {
+        const TimedStatistics& t = row.totals;
+        nlohmann::ordered_json out{{"scene", row.series.scene},
+                                   {"strategy", row.series.strategy},
+                                   {"sequence", row.series.sequence},
+                                   {"parameters", row.series.parameters},
+                                   {"thread_map", row.series.thread_map},
+                                   {"gpu", row.series.gpu},
+                                   {"spp", row.series.spp},
+                                   {"samples", samples(row.series)},
+                                   {"cycles", t.cycles},
+                                   {"seconds", json_of(t.seconds)},
+                                   {"cycles_per_ray", json_of(std::optional(row.cycles_per_ray))},
+                                   {"speed_up", json_of(row.speed_up)},
+                                   {"rays", t.rays},
+                                   {"warp_accesses", t.warp_accesses},
+                                   {"lane_accesses", t.lane_accesses},
+                                   {"instructions", t.instructions},
+                                   {"loads", t.loads},
+                                   {"l1", json_of(t.l1)},
+                                   {"l2", json_of(t.l2)}};
+        if (t.l3.requests()) out["l3"] = json_of(t.l3);
+        out["dram_sectors"] = t.dram_sectors;
+        out["bottleneck"] = row.waits_most() ? "latency" : row.busiest;
+        out["busiest"] = row.busiest;
+        out["occupancy"] = json_of(t.occupancy());
+        for (const auto& list : {std::span<const Named>(resources), std::span<const Named>(parts)})
+            for (const Named& r : list) out["utilisation"][r.name] = json_of(utilisation(t, t.*r.resource));
+        out["l2_gb_s"] = json_of(l2_gb_s(row));
+        out["l2_peak_gb_s"] = json_of(t.peak_l2_gb_s);
+        out["dram_gb_s"] = json_of(dram_gb_s(row));
+        out["dram_peak_gb_s"] = json_of(t.peak_dram_gb_s);
+        out["visit_latency"] = json_of(visit_latency(t));
+        rows.push_back(std::move(out));
+    }
+    return nlohmann::ordered_json{{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}}.dump(2) +
+           "\n";
+}
+
+std::string to_csv(const TimedReport& report) {
+    std::string text =
+        "scene,strategy,sequence,thread_map,gpu,spp,cycles,seconds,cycles_per_ray,speed_up,rays,warp_accesses,"
+        "lane_accesses,instructions,loads,l1_hits,l1_merges,l1_line_misses,l1_sector_misses,l2_hits,l2_merges,"
+        "l2_line_misses,l2_sector_misses,l3_hits,l3_merges,l3_line_misses,l3_sector_misses,dram_sectors,issue,l1_port,"
+        "crossbar,l2_slices,dram,l1_tags,l1_data,l1_mshrs,l2_mshrs,occupancy,l2_gb_s,l2_peak_gb_s,dram_gb_s,"
+        "dram_peak_gb_s,visit_latency,bottleneck,busiest\n";
+    for (const TimedRow& row : report.rows) {
+        const TimedStatistics& t = row.totals;
+        const TimedSeries& s = row.series;
+        for (const std::string* name : {&s.scene, &s.strategy, &s.sequence, &s.thread_map, &s.gpu})
+            text += csv_field(*name) + ',';
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}", s.spp, t.cycles, t.seconds, row.cycles_per_ray.mean,
+                            row.speed_up ? fmt::format("{}", row.speed_up->mean) : "", t.rays, t.warp_accesses,
+                            t.lane_accesses, t.instructions, t.loads);
+        for (const LevelAnswers* a : {&t.l1, &t.l2, &t.l3})
+            text += fmt::format(",{},{},{},{}", a->hits, a->merges, a->line_misses, a->sector_misses);
+        text += fmt::format(",{}", t.dram_sectors);
+        for (const Named& r : resources) text += fmt::format(",{}", utilisation(t, t.*r.resource));
+        for (const Named& r : parts) text += fmt::format(",{}", utilisation(t, t.*r.resource));
+        for (const double value :
+             {t.occupancy(), l2_gb_s(row), t.peak_l2_gb_s, dram_gb_s(row), t.peak_dram_gb_s, visit_latency(t)})
+            text += fmt::format(",{}", value);
+        text += fmt::format(",{},{}\n", row.waits_most() ? "latency" : row.busiest, row.busiest);
+    }
+    return text;
+}
+
+}  // namespace raycache::cachesim
