@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -72,6 +73,15 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
     return names;
 }
 
+/// The warps that are handed to all replays of a launch before the next are read.
+constexpr std::size_t warps_at_once = 64;
+
+/// 0 … count - 1, in any order and by several threads.
+template <class Use>
+void for_each(std::size_t count, const Use& use) {
+    tbb::parallel_for(std::size_t{0}, count, use, tbb::simple_partitioner());
+}
+
 }  // namespace
 
 Explained explain(const ExplainRequest& request) {
@@ -115,16 +125,27 @@ Explained explain(const ExplainRequest& request) {
         std::vector<cachesim::TimedReplay> timed;
         for (const cachesim::SpeedUp& s : explanation.speed_ups)
             timed.emplace_back(gpu, header.regions, header.launches[launch], s.replay.ideal);
+        std::vector<std::shared_ptr<const traces::WarpTrace>> warps;
+        const auto push_all = [&] {
+            const auto push_to = [&](auto& r) {
+                for (const auto& warp : warps) r.push(warp);
+            };
+            for_each(1 + timed.size(), [&](std::size_t i) { i == 0 ? push_to(replay) : push_to(timed[i - 1]); });
+            warps.clear();
+        };
         request.sources[t]->deliver(launch, [&](traces::WarpTrace&& warp) {
-            const std::uint64_t rays = count_rays(warp);
-            const auto shared = std::make_shared<const traces::WarpTrace>(std::move(warp));
-            replay.push(shared);
-            for (cachesim::TimedReplay& r : timed) r.push(shared);
-            bar.add(1, rays);
+            bar.add(1, count_rays(warp));
+            warps.push_back(std::make_shared<const traces::WarpTrace>(std::move(warp)));
+            if (warps.size() == warps_at_once) push_all();
         });
-        traces[t]->launches[launch] = replay.finish();
-        std::vector<cachesim::TimedStatistics> times;
-        for (cachesim::TimedReplay& r : timed) times.push_back(r.finish());
+        push_all();
+        std::vector<cachesim::TimedStatistics> times(timed.size());
+        for_each(1 + timed.size(), [&](std::size_t i) {
+            if (i == 0)
+                traces[t]->launches[launch] = replay.finish();
+            else
+                times[i - 1] = timed[i - 1].finish();
+        });
         const std::lock_guard lock(mutex);  // sums of whole numbers: in any order the same
         traces[t]->findings += explainer.findings();
         for (std::size_t i = 0; i < times.size(); ++i) {
@@ -134,8 +155,13 @@ Explained explain(const ExplainRequest& request) {
         }
         if (request.pixels) done.costs[t] += explainer.pixel_costs();
     };
-    // Each launch begins with cold caches, so launches are independent: one thread each.
-    tbb::parallel_for(std::size_t{0}, 2 * first.launches.size(), run_task, tbb::simple_partitioner());
+    // Each launch begins with cold caches, so launches are independent; but the replays of one launch share its warps,
+    // so as many launches at once as keep the threads busy take the least memory.
+    const std::size_t tasks = 2 * first.launches.size(), replays = 1 + explanation.speed_ups.size();
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    const std::size_t at_once = replays == 1 ? tasks : (threads + replays - 1) / replays;
+    for (std::size_t begin = 0; begin < tasks; begin += at_once)
+        for_each(std::min(at_once, tasks - begin), [&](std::size_t i) { run_task(begin + i); });
     return done;
 }
 

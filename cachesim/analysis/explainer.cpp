@@ -35,6 +35,7 @@ Explainer::Explainer(const Gpu& gpu, const std::vector<traces::Region>& regions,
       warps_per_cta_(gpu.warps_per_cta),
       sectors_per_line_(gpu.l1().line_bytes / gpu.l1().sector_bytes),
       line_bytes_(gpu.l1().line_bytes),
+      ids_(regions, line_bytes_),
       depth_(depth),
       log_(regions, gpu.l1().line_bytes, gpu.l1().sector_bytes),
       fetchers_(std::size_t{gpu.sms} * gpu.l1_per_sm),
@@ -57,7 +58,9 @@ void Explainer::issued(const IssuedAccess& access) {
 
 void Explainer::served(std::size_t level, const ServedRequest& request) {
     const std::size_t cache = level == 0 ? request.sm * l1_per_sm_ + request.cache : request.sm;
-    const auto shadow = shadows_[level][cache].look_up(request.address / line_bytes_, request.asked, request.missing);
+    const std::uint8_t region = log_[request.access].region;
+    const auto shadow =
+        shadows_[level][cache].look_up(ids_.id(request.address / line_bytes_, region), request.asked, request.missing);
     const Verdict verdict = judge(request, shadow);
 
     LevelFindings& found = findings_.levels[level];
@@ -65,7 +68,6 @@ void Explainer::served(std::size_t level, const ServedRequest& request) {
     verdict.add_to(found.by_ray[static_cast<unsigned>(request.ray) * LevelFindings::bounces + request.bounce]);
     if (depth_.known()) {
         std::uint32_t left = request.asked;
-        const std::uint8_t region = log_[request.access].region;
         log_.for_each_lane(request, [&](unsigned, std::uint32_t element, std::uint32_t sectors) {
             const std::uint8_t depth = depth_(region, element);
             if (depth != ElementDepth::none) verdict.add_to(found.by_depth[depth], sectors & left);
@@ -73,20 +75,20 @@ void Explainer::served(std::size_t level, const ServedRequest& request) {
             return left != 0;
         });
     }
-    if (level == 0) find_owners(request, cache, shadow.entry);
+    if (level == 0) find_owners(request, cache, shadow.number);
     if (!with_pixels_) return;
     if (level == 0) pixel_costs_.add_l1(log_, request);
     if (level + 1 == shadows_.size()) pixel_costs_.add_last(log_, request);
 }
 
-void Explainer::find_owners(const ServedRequest& request, std::size_t cache, std::uint32_t entry) {
-    std::vector<std::uint32_t>& fetchers = fetchers_[cache];
-    fetchers.resize(shadows_[0][cache].entries() * sectors_per_line_);
-    std::uint32_t* const of_line = &fetchers[std::size_t{entry} * sectors_per_line_];
+void Explainer::find_owners(const ServedRequest& request, std::size_t cache, std::uint32_t line) {
+    std::deque<std::uint32_t>& fetchers = fetchers_[cache];
+    const std::size_t of_line = std::size_t{line} * sectors_per_line_;
+    if (fetchers.size() == of_line) fetchers.resize(of_line + sectors_per_line_);
     const std::uint32_t warp = log_[request.access].warp;
     Sharing& sharing = findings_.sharing;
     for (std::uint32_t left = request.asked & ~request.missing; left != 0; left &= left - 1) {
-        const std::uint32_t fetcher = of_line[std::countr_zero(left)];
+        const std::uint32_t fetcher = fetchers[of_line + static_cast<unsigned>(std::countr_zero(left))];
         ++(fetcher == warp                                     ? sharing.same_warp
            : fetcher / warps_per_cta_ == warp / warps_per_cta_ ? sharing.same_cta
                                                                : sharing.other_cta);
@@ -94,7 +96,7 @@ void Explainer::find_owners(const ServedRequest& request, std::size_t cache, std
     // What a fill brings beside the missing sectors came with them, unless it was there already: asked for and found.
     const std::uint32_t found = request.asked & ~request.missing;
     for (std::uint32_t left = shadows_[0][cache].filled(request.missing) & ~found; left != 0; left &= left - 1)
-        of_line[std::countr_zero(left)] = warp;
+        fetchers[of_line + static_cast<unsigned>(std::countr_zero(left))] = warp;
 }
 
 }  // namespace raycache::cachesim

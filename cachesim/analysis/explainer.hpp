@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "cachesim/analysis/access_log.hpp"
@@ -16,6 +17,7 @@
 #include "cachesim/analysis/findings.hpp"
 #include "cachesim/analysis/pixel_costs.hpp"
 #include "cachesim/analysis/shadow_cache.hpp"
+#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/request_sink.hpp"
 
@@ -38,13 +40,14 @@ public:
     void end_window() override { log_.clear(); }
 
 private:
-    void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t entry);
+    void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t line);
 
     std::uint32_t l1_per_sm_, warps_per_cta_, sectors_per_line_, line_bytes_;
+    LineIds ids_;
     const ElementDepth& depth_;
     AccessLog log_;
-    std::vector<std::vector<ShadowCache>> shadows_;     ///< by level, then cache
-    std::vector<std::vector<std::uint32_t>> fetchers_;  ///< by L1, then entry of its shadow x sector: a warp
+    std::vector<std::vector<ShadowCache>> shadows_;    ///< by level, then cache
+    std::vector<std::deque<std::uint32_t>> fetchers_;  ///< by L1, then number of a line x sector: a warp
     bool with_pixels_;
     PixelCosts pixel_costs_;
     Findings findings_;

@@ -36,8 +36,8 @@ public:
     /// Whether the map is line & (sets - 1).
     bool is_low_bits() const { return form_ == Form::low_bits; }
 
-    /// Where slice and set are exclusive-ors of bits of the line: what each value of each of its bytes contributes, from
-    /// the lowest byte to that of `last_line`. Else empty.
+    /// Where slice and set are exclusive-ors of bits of the line: what each value of each of its bytes contributes,
+    /// from the lowest byte to that of `last_line`. Else empty.
     const std::vector<std::array<std::uint32_t, 256>>& tables() const { return tables_; }
 
     struct Place {

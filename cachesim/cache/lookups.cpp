@@ -12,7 +12,8 @@ RAYCACHE_AVX512 void drop_answered_avx512(Lookups& l) {
     constexpr std::size_t lanes = 16;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < l.count; i += lanes) {
-        const auto valid = static_cast<__mmask16>(_bzhi_u32(0xffff, static_cast<unsigned>(std::min(l.count - i, lanes))));
+        const auto valid =
+            static_cast<__mmask16>(_bzhi_u32(0xffff, static_cast<unsigned>(std::min(l.count - i, lanes))));
         const __m512i lines = _mm512_maskz_loadu_epi32(valid, &l.lines[i]),
                       sectors = _mm512_maskz_loadu_epi32(valid, &l.sectors[i]),
                       accesses = _mm512_maskz_loadu_epi32(valid, &l.accesses[i]);

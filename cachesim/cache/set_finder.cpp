@@ -37,7 +37,8 @@ RAYCACHE_AVX512 void SetFinder::find_by_tables(const Lookups& lookups) {
     const std::size_t bytes = std::min<std::size_t>(tables.size(), 4);
     for (std::size_t i = 0; i < lookups.count; i += lanes) {
         const auto count = static_cast<unsigned>(std::min(lookups.count - i, lanes));
-        const __m512i id = _mm512_maskz_loadu_epi32(static_cast<__mmask16>(_bzhi_u32(0xffff, count)), &lookups.lines[i]);
+        const __m512i id =
+            _mm512_maskz_loadu_epi32(static_cast<__mmask16>(_bzhi_u32(0xffff, count)), &lookups.lines[i]);
         __m512i offset = all(runs_[0].offset), set = all(runs_[0].high);
         for (std::size_t run = 1; run < runs_.size(); ++run) {
             const __mmask16 in = _mm512_cmpge_epu32_mask(id, all(runs_[run].first));

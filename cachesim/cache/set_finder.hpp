@@ -17,8 +17,8 @@ public:
     /// `ids` must outlive this object.
     SetFinder(const CacheGeometry&, const LineIds& ids, InstructionSet);
 
-    /// Sets of the look-ups, numbered through all caches of the level. Of the access behind a look-up, region_of(access)
-    /// and cache_of(access) say where its line lies and which cache is asked.
+    /// Sets of the look-ups, numbered through all caches of the level. Of the access behind a look-up,
+    /// region_of(access) and cache_of(access) say where its line lies and which cache is asked.
     template <class RegionOf, class CacheOf>
     const std::uint32_t* operator()(const Lookups& lookups, const RegionOf& region_of, const CacheOf& cache_of) {
         if (sets_.size() < lookups.count + room) sets_.resize(2 * lookups.count + room);

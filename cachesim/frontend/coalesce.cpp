@@ -74,12 +74,17 @@ void Coalescer::add_one(const WarpAccess& access, std::uint32_t number, Lookups&
         base_ = 0;
     }
     base_ += static_cast<std::uint32_t>(most_lookups_);  // every entry so far is below
-    Merger merger{table_.data(), table_.size() - 1,           table_shift_,
-                  base_,         out.lines.data() + out.count, out.sectors.data() + out.count};
+    Merger merger{table_.data(),
+                  table_.size() - 1,
+                  table_shift_,
+                  base_,
+                  out.lines.data() + out.count,
+                  out.sectors.data() + out.count};
     if (!layout.sectors.empty()) {
         for (unsigned lane = 0; lane < lanes; ++lane) {
             const std::uint32_t element = access.elements[lane];
-            merger.touch(layout.first_id + (element >> layout.elements_shift), layout.sectors[element & layout.in_line]);
+            merger.touch(layout.first_id + (element >> layout.elements_shift),
+                         layout.sectors[element & layout.in_line]);
         }
     } else {
         const std::uint64_t in_line = shape_.sectors - 1;

@@ -33,7 +33,7 @@ private:
 
     LineShape shape_;
     LineIds& ids_;
-    bool vectors_ = false;  ///< the machine has AVX-512, and every region can use it
+    bool vectors_ = false;          ///< the machine has AVX-512, and every region can use it
     std::size_t most_lookups_ = 0;  ///< of one access
     std::vector<RegionLayout> layouts_;
     std::vector<std::uint32_t> table_;

@@ -20,9 +20,7 @@ RAYCACHE_AVX512 inline void store(std::uint32_t* to, __m512i what) { _mm512_stor
 RAYCACHE_AVX512 inline __m512i places() {
     return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
-RAYCACHE_AVX512 inline __mmask16 lowest(unsigned count) {
-    return static_cast<__mmask16>(_bzhi_u32(0xffff, count));
-}
+RAYCACHE_AVX512 inline __mmask16 lowest(unsigned count) { return static_cast<__mmask16>(_bzhi_u32(0xffff, count)); }
 
 /// The constants of a line.
 struct Shape {
@@ -55,8 +53,8 @@ RAYCACHE_AVX512 inline Lanes lanes_of(const std::uint32_t* elements, unsigned co
                                           all(layout.start));
     const __m512i in_line = _mm512_and_si512(byte, shape.in_line);
     const __m512i first = _mm512_srl_epi32(in_line, shape.sector_shift);
-    const __m512i last = _mm512_srl_epi32(
-        _mm512_add_epi32(in_line, all(static_cast<std::uint32_t>(layout.extra))), shape.sector_shift);
+    const __m512i last =
+        _mm512_srl_epi32(_mm512_add_epi32(in_line, all(static_cast<std::uint32_t>(layout.extra))), shape.sector_shift);
     const __m512i range = _mm512_sub_epi32(_mm512_sllv_epi32(all(2), _mm512_sub_epi32(last, first)), all(1));
     return {_mm512_add_epi32(_mm512_srl_epi32(byte, shape.line_shift), all(key)),
             _mm512_maskz_sllv_epi32(active, range, first)};

@@ -16,7 +16,7 @@ namespace raycache::cachesim {
 
 /// Lanes of consecutive accesses on their way into vectors; contents are of no interest between calls.
 struct PackedLanes {
-    std::vector<std::uint32_t> keys, sectors;   ///< of each lane's line, or of both where its object straddles two
+    std::vector<std::uint32_t> keys, sectors;    ///< of each lane's line, or of both where its object straddles two
     std::vector<std::uint32_t> begin, accesses;  ///< of each vector: its first lane, and whose that is
 };
 

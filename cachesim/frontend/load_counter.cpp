@@ -39,13 +39,13 @@ RAYCACHE_AVX512 unsigned distinct_avx512(const std::uint32_t* elements, unsigned
     if (count <= 16) return count - static_cast<unsigned>(std::popcount(repeated));
     const auto second_lanes = static_cast<__mmask16>(_bzhi_u32(0xffff, count - 16));
     const __m512i second = _mm512_maskz_loadu_epi32(second_lanes, elements + 16);
-    repeated |= static_cast<unsigned>(_mm512_mask_test_epi32_mask(second_lanes, _mm512_conflict_epi32(second),
-                                                                  _mm512_set1_epi32(-1)))
+    repeated |= static_cast<unsigned>(
+                    _mm512_mask_test_epi32_mask(second_lanes, _mm512_conflict_epi32(second), _mm512_set1_epi32(-1)))
                 << 16;
     unsigned in_first = 0;
     for (unsigned lane = 0; lane < 16; ++lane)
-        in_first |= _mm512_mask_cmpeq_epi32_mask(second_lanes, second,
-                                                 _mm512_set1_epi32(static_cast<int>(elements[lane])));
+        in_first |=
+            _mm512_mask_cmpeq_epi32_mask(second_lanes, second, _mm512_set1_epi32(static_cast<int>(elements[lane])));
     return count - static_cast<unsigned>(std::popcount(repeated | in_first << 16));
 }
 

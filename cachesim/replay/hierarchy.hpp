@@ -100,8 +100,8 @@ private:
     std::optional<WriteBack> write_back_;         ///< where any region is written
     Tally tally_;
     RequestSink* sink_ = nullptr;
-    std::vector<WarpAccess> accesses_;  ///< of this window
-    std::vector<Origin> origins_;       ///< of each of them
+    std::vector<WarpAccess> accesses_;      ///< of this window
+    std::vector<Origin> origins_;           ///< of each of them
     std::uint32_t issued_ = 0, batch_ = 0;  ///< accesses of this window, and those of SMs that have ended
     Lookups lookups_, written_;             ///< of one SM
     std::vector<std::uint32_t> sectors_;    ///< of each access: count_accesses()

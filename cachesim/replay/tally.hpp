@@ -32,9 +32,7 @@ public:
     RayOf ray_of(std::uint32_t group) const { return rays_[group / (kinds_.size() + 1)]; }
 
     /// A ray-start record.
-    void add_rays(const traces::Record& record) {
-        sums_[first_group(record) + kinds_.size()].rays += record.lanes();
-    }
+    void add_rays(const traces::Record& record) { sums_[first_group(record) + kinds_.size()].rays += record.lanes(); }
 
     /// A warp access of `lanes` lanes and distinct sectors.
     void add_access(std::uint32_t group, unsigned lanes, unsigned sectors) {

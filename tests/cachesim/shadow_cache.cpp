@@ -38,7 +38,7 @@ private:
 
 TEST_CASE("a shadow cache of two lines answers as computed by hand") {
     ShadowCache cache(2);
-    const auto absent = [&](std::uint64_t line, std::uint32_t asked) { return cache.look_up(line, asked, 0).absent; };
+    const auto absent = [&](std::uint32_t line, std::uint32_t asked) { return cache.look_up(line, asked, 0).absent; };
     CHECK(absent(7, 0b0011) == 0b0011);
     CHECK(absent(7, 0b0110) == 0b0100);  // a sector miss in a line that is there
     CHECK(absent(8, 0b0001) == 0b0001);
@@ -48,7 +48,7 @@ TEST_CASE("a shadow cache of two lines answers as computed by hand") {
     CHECK(absent(8, 0b0001) == 0b0001);  // evicts 9
     CHECK(absent(9, 0b1000) == 0b1000);  // evicts 7
     CHECK(absent(7, 0b0001) == 0b0001);
-    CHECK(cache.entries() == 3);
+    CHECK(cache.lines_seen() == 3);
 }
 
 TEST_CASE("a shadow cache agrees with a search through a list on random look-ups") {
@@ -59,7 +59,7 @@ TEST_CASE("a shadow cache agrees with a search through a list on random look-ups
     std::map<std::uint64_t, std::uint32_t> held;
     for (int i = 0; i < 20000; ++i) {
         // Far apart, so that hashing is put to the test; more of them than fit.
-        const std::uint64_t line = (random() % (3 * lines + 2)) << (random() % 2 ? 0 : 33);
+        const auto line = static_cast<std::uint32_t>((random() % (3 * lines + 2)) << (random() % 2 ? 0 : 21));
         const auto asked = static_cast<std::uint32_t>(random() % 15 + 1);
         const auto missing = asked & static_cast<std::uint32_t>(random());
         const auto answer = cache.look_up(line, asked, missing);
@@ -67,7 +67,7 @@ TEST_CASE("a shadow cache agrees with a search through a list on random look-ups
         REQUIRE(answer.never_held == (asked & ~held[line]));
         held[line] |= asked;
     }
-    CHECK(cache.entries() == held.size());
+    CHECK(cache.lines_seen() == held.size());
 }
 
 TEST_CASE("a fill brings the whole aligned group of each missing sector") {

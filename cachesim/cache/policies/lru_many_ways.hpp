@@ -1,5 +1,5 @@
-// Least recently used, for many ways: a hash table finds the line, a ring of the set's ways keeps the order of last use.
-// Every look-up takes constant time, whatever the associativity.
+// Least recently used, for many ways: a hash table finds the line, a ring of the set's ways keeps the order of last
+// use. Every look-up takes constant time, whatever the associativity.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace raycache::cachesim {
 
-/// `Place` holds every way of one set and one more. A set is self-contained: the smaller a place is, the more of it stays
-/// in the caches of the machine.
+/// `Place` holds every way of one set and one more. A set is self-contained: the smaller a place is, the more of it
+/// stays in the caches of the machine.
 template <class Place>
 class LruManyWays {
 public:

@@ -186,7 +186,7 @@ private:
 
     /// Puts lines into the queues of their sets, oldest first: those that were last used between the horizon and a
     /// later one. No two were used at the same time, so the time is where to put them for sorting.
-    RAYCACHE_AVX512 [[gnu::noinline]] void move_horizon(std::uint32_t number) {
+    [[gnu::noinline]] RAYCACHE_AVX512 void move_horizon(std::uint32_t number) {
         Cache& cache = caches_[number];
         std::uint32_t* const states = states_of(number);
         const std::uint32_t span = std::min(cache.span, cache.now - cache.horizon);
