@@ -15,8 +15,7 @@ enum class L1Port {
     /// Tags of tags_per_cycle lines and l1_bytes_per_cycle bytes of distinct sectors a cycle (NVIDIA since Volta).
     tags,
     /// l1_banks banks, a sector each and cycle, bank = sector number mod l1_banks; the sectors of a load go in
-    /// descending
-    /// order of address and wait for the next cycle at the first bank that is taken (GPGPU-Sim).
+    /// descending order of address and wait for the next cycle at the first bank that is taken (GPGPU-Sim).
     banks,
 };
 
@@ -36,8 +35,7 @@ struct LevelTiming {
 struct Timing {
     double clock_mhz = 0;
     std::uint32_t launch_cycles = 0;  ///< from the launch to the first instruction
-    std::uint32_t schedulers =
-        4;  ///< of an SM; each issues one instruction a cycle, warp slot mod schedulers is its own
+    std::uint32_t schedulers = 4;     ///< of an SM, each of one instruction a cycle; warp slot mod schedulers
 
     /// Instructions between the loads of a visit and the next access, by kind of object, and the cycles from one to the
     /// next that depends on it.
