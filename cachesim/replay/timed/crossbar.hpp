@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/replay/timed/calendar.hpp"
 #include "cachesim/replay/timed/cycle.hpp"
 #include "cachesim/replay/timed/ring.hpp"
 
@@ -24,7 +25,8 @@ public:
     /// `cost`: cycles that a packet takes an output. 0: as many packets at once as there are. `window`: the most cycles
     /// of one run().
     Crossbar(std::size_t inputs, std::size_t outputs, double cost, std::size_t window)
-        : queues_(inputs),
+        : coming_(window),
+          queues_(inputs),
           input_free_(inputs),
           output_free_(outputs),
           cost_(cost),
@@ -35,7 +37,7 @@ public:
 
     /// Packets of one input leave in order of readiness, ties in order of coming.
     void add(std::size_t input, const Packet& packet) {
-        queues_[input].insert(packet, [](const Packet& a, const Packet& b) { return a.ready < b.ready; });
+        coming_.push(packet.ready, {packet, static_cast<std::uint32_t>(input)});
         ++packets_;
     }
 
@@ -43,8 +45,8 @@ public:
 
     /// Before this cycle no packet moves.
     Cycle next_time() const {
-        Cycle next = never;
-        if (packets_ == 0) return next;
+        if (packets_ == 0) return never;
+        Cycle next = coming_.time();
         for (std::size_t input = 0; input < queues_.size(); ++input)
             if (!queues_[input].empty())
                 next = std::min(next, std::max(queues_[input].front().ready, static_cast<Cycle>(input_free_[input])));
@@ -52,11 +54,12 @@ public:
     }
 
     /// Moves every packet that comes to the head of its queue before `end`, in order of time, and calls
-    /// arrived(packet, time) for each, in parts of a cycle. Packets added later must not be ready before `end`, and a
-    /// run begins where the one before ended.
+    /// arrived(packet, time) for each, in parts of a cycle. A run begins where the one before ended; packets that are
+    /// added later though they are ready before `end` come first in the next.
     template <class Arrived>
     void run(Cycle begin, Cycle end, Arrived&& arrived) {
         if (packets_ == 0) return;
+        coming_.take(begin, end, [&](const Coming& c) { queues_[c.input].push(c.packet); });
         begin_ = static_cast<double>(begin);
         const auto limit = static_cast<double>(end);
         for (std::size_t input = 0; input < queues_.size(); ++input)
@@ -74,6 +77,11 @@ public:
 
 private:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+    struct Coming {
+        Packet packet{};
+        std::uint32_t input = 0;
+    };
 
     /// The head of an input's queue is the next.
     template <class Arrived>
@@ -110,6 +118,7 @@ private:
         *link = input;
     }
 
+    Calendar<Coming> coming_;  ///< packets that are not ready yet
     std::vector<Ring<Packet>> queues_;
     std::vector<double> input_free_, output_free_;
     double cost_;
