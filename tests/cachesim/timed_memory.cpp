@@ -74,6 +74,14 @@ TEST_CASE("an output takes packets at its rate, and goes on with an input whose 
     CHECK(arrivals(crossbar, 20, 30) == Arrivals{{4, 20}});
 }
 
+TEST_CASE("a packet that is ready before the end of a run in which nothing moved comes in the next run") {
+    Crossbar<Packet> crossbar(1, 1, 1, 10);
+    CHECK(arrivals(crossbar, 0, 10).empty());
+    crossbar.add(0, {5, 0, 1});
+    CHECK(arrivals(crossbar, 10, 20) == Arrivals{{1, 5}});
+    CHECK(crossbar.empty());
+}
+
 TEST_CASE("queues at the outputs never make a launch slower than queues at the inputs") {
     Gpu gpu = timed_gpu();
     gpu.sms = 4;

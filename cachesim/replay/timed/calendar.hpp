@@ -45,7 +45,8 @@ public:
         ++pushed_;
     }
 
-    /// Calls use(item) for all that come in these cycles, in order. Nothing comes before `begin`.
+    /// Calls use(item) for all that come in these cycles, in order. None that was pushed may come before `begin`, which
+    /// is not before the end of the last take().
     template <class Use>
     void take(Cycle begin, Cycle end, Use&& use) {
         move_base(begin);

@@ -58,8 +58,8 @@ public:
     /// added later though they are ready before `end` come first in the next.
     template <class Arrived>
     void run(Cycle begin, Cycle end, Arrived&& arrived) {
-        if (packets_ == 0) return;
         coming_.take(begin, end, [&](const Coming& c) { queues_[c.input].push(c.packet); });
+        if (packets_ == 0) return;
         begin_ = static_cast<double>(begin);
         const auto limit = static_cast<double>(end);
         for (std::size_t input = 0; input < queues_.size(); ++input)
