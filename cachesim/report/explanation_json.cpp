@@ -1,23 +1,13 @@
 #include <fmt/format.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/groups.hpp"
+#include "cachesim/report/json_parts.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json estimate(const Estimate& e) {
-    return {{"mean", number(e.mean)}, {"half_width_95", e.half_width ? number(*e.half_width) : Json(nullptr)}};
-}
 
 Json counts(const MissCounts& c) {
     return {{"lookups", c.lookups},   {"misses", c.misses()},   {"compulsory", c.compulsory},
@@ -69,9 +59,9 @@ Json trace(const ExplainedTrace& t) {
 Json factors(const Counters& base, const Counters& other, std::size_t levels) {
     Json json = Json::object();
     for (const FactorTerm& term : factor_terms(levels))
-        json[term.key] = {{"base", number(term.value(base))},
-                          {"other", number(term.value(other))},
-                          {"factor", number(term.value(other) / term.value(base))}};
+        json[term.key] = {{"base", json_of(term.value(base))},
+                          {"other", json_of(term.value(other))},
+                          {"factor", json_of(term.value(other) / term.value(base))}};
     return json;
 }
 
@@ -99,8 +89,8 @@ std::string to_json(const Explanation& e) {
     Json json{{"scene", e.scene}, {"gpu", e.gpu}, {"spp", e.spp}, {"sector_bytes", e.sector_bytes}};
     Json& samples = json["samples"] = Json::array();
     for (const LaunchStatistics& launch : e.base.launches) samples.push_back(launch.sample);
-    json["dram_bytes_ratio"] = estimate(dram_bytes_ratio(e));
-    json["l2_bytes_ratio"] = estimate(l2_bytes_ratio(e));
+    json["dram_bytes_ratio"] = json_of(dram_bytes_ratio(e));
+    json["l2_bytes_ratio"] = json_of(l2_bytes_ratio(e));
     json["factors"] = factors(e.base.totals(), e.other.totals(), e.levels());
     json["groups"] = groups(e);
     json["base"] = trace(e.base);
@@ -109,11 +99,10 @@ std::string to_json(const Explanation& e) {
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},
                                  {"other_cycles", s.other.cycles},
-                                 {"speed_up", estimate(s.value())}});
+                                 {"speed_up", json_of(s.value())}});
     json["sentence"] = sentence(e);
     if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
-    // A name that is no UTF-8 shows U+FFFD instead of ending the program.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    return dump(json);
 }
 
 }  // namespace raycache::cachesim

@@ -1,21 +1,9 @@
-#include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "cachesim/report/report.hpp"
+#include "cachesim/report/json_parts.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// The shortest digits that read back as the same double; null where there is no value.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json estimate(const std::optional<Estimate>& e) {
-    if (!e) return nullptr;
-    return {{"mean", number(e->mean)}, {"half_width_95", e->half_width ? number(*e->half_width) : Json(nullptr)}};
-}
 
 Json counters(const Counters& c, bool l3) {
     Json json{{"rays", c.rays},
@@ -48,46 +36,36 @@ Json factors(const std::optional<Factors>& f, bool l3) {
 
 /// `l3`: whether the report says anything of an L3; where this row's GPU has none, it says null.
 Json row_json(const Row& row, bool l3) {
-    Json json{{"scene", row.scene},
-              {"strategy", row.strategy},
-              {"sequence", row.sequence},
-              {"parameters", row.parameters},
-              {"thread_map", row.thread_map},
-              {"gpu", row.gpu},
-              {"group", row.group},
-              {"spp", row.spp},
-              {"samples", row.samples},
-              {"totals", counters(row.totals, l3)},
-              {"rays", estimate(row.rays)},
-              {"steps_per_ray", estimate(row.steps_per_ray)},
-              {"active_lanes", estimate(row.active_lanes)},
-              {"sectors_per_access", estimate(row.sectors_per_access)},
-              {"l1_hit_rate", estimate(row.l1_hit_rate)},
-              {"l1_request_hit_rate", estimate(row.l1_request_hit_rate)},
-              {"l2_hit_rate", estimate(row.l2_hit_rate)},
-              {"l2_bytes_per_ray", estimate(row.l2_bytes_per_ray)},
-              {"dram_bytes_per_ray", estimate(row.dram_bytes_per_ray)},
-              {"l2_bytes_ratio", estimate(row.l2_bytes_ratio)},
-              {"dram_bytes_ratio", estimate(row.dram_bytes_ratio)},
-              {"factors", factors(row.factors, l3)}};
+    Json json = row_names(row);
+    json.update({{"totals", counters(row.totals, l3)},
+                 {"rays", json_of(row.rays)},
+                 {"steps_per_ray", json_of(row.steps_per_ray)},
+                 {"active_lanes", json_of(row.active_lanes)},
+                 {"sectors_per_access", json_of(row.sectors_per_access)},
+                 {"l1_hit_rate", json_of(row.l1_hit_rate)},
+                 {"l1_request_hit_rate", json_of(row.l1_request_hit_rate)},
+                 {"l2_hit_rate", json_of(row.l2_hit_rate)},
+                 {"l2_bytes_per_ray", json_of(row.l2_bytes_per_ray)},
+                 {"dram_bytes_per_ray", json_of(row.dram_bytes_per_ray)},
+                 {"l2_bytes_ratio", json_of(row.l2_bytes_ratio)},
+                 {"dram_bytes_ratio", json_of(row.dram_bytes_ratio)},
+                 {"factors", factors(row.factors, l3)}});
     if (row.written_bytes_per_ray)
-        json.update({{"written_bytes_per_ray", estimate(row.written_bytes_per_ray)},
-                     {"sort_bytes_per_ray", estimate(row.sort_bytes_per_ray)}});
+        json.update({{"written_bytes_per_ray", json_of(row.written_bytes_per_ray)},
+                     {"sort_bytes_per_ray", json_of(row.sort_bytes_per_ray)}});
     if (l3)
-        json.update({{"l3_hit_rate", estimate(row.l3_hit_rate)}, {"l3_bytes_per_ray", estimate(row.l3_bytes_per_ray)}});
+        json.update({{"l3_hit_rate", json_of(row.l3_hit_rate)}, {"l3_bytes_per_ray", json_of(row.l3_bytes_per_ray)}});
     return json;
 }
 
 }  // namespace
 
 std::string to_json(const Report& report) {
-    constexpr const char* by[] = {"none", "bounce", "ray", "object"};
-    Json json{{"baseline", report.baseline}, {"by", by[static_cast<unsigned>(report.by)]}};
+    Json json{{"baseline", report.baseline}, {"by", name_of(report.by)}};
     json["rows"] = Json::array();
     for (const Row& row : report.rows) json["rows"].push_back(row_json(row, report.has_l3()));
     json["notes"] = Json(report.notes);
-    // A name that is no UTF-8 shows U+FFFD instead of ending the program.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    return dump(json);
 }
 
 }  // namespace raycache::cachesim

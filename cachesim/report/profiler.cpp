@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <variant>
 
 #include "cachesim/report/csv_field.hpp"
+#include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A count, or a quotient: NaN where nothing was counted.
 using Value = std::variant<std::uint64_t, double>;
@@ -75,8 +73,7 @@ std::string to_string(const Value& value, int digits, const char* none) {
 
 Json to_json(const Value& value) {
     if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
-    const double number = std::get<double>(value);
-    return std::isfinite(number) ? Json(number) : Json(nullptr);
+    return json_of(std::get<double>(value));
 }
 
 }  // namespace
@@ -107,23 +104,13 @@ std::string to_text(const ProfilerReport& profile) {
 }
 
 std::string to_json(const ProfilerReport& profile) {
-    constexpr const char* by[] = {"none", "bounce", "ray", "object"};
-    Json json{{"by", by[static_cast<unsigned>(profile.report.by)]}, {"rows", Json::array()}};
+    Json json{{"by", name_of(profile.report.by)}, {"rows", Json::array()}};
     for (const Row& row : profile.report.rows) {
-        Json& out = json["rows"].emplace_back(Json{{"scene", row.scene},
-                                                   {"strategy", row.strategy},
-                                                   {"sequence", row.sequence},
-                                                   {"parameters", row.parameters},
-                                                   {"thread_map", row.thread_map},
-                                                   {"gpu", row.gpu},
-                                                   {"group", row.group},
-                                                   {"spp", row.spp},
-                                                   {"samples", row.samples}});
+        Json& out = json["rows"].emplace_back(row_names(row));
         for (const Metric& metric : metrics_of(profile.report))
             out["metrics"][metric.name] = to_json(metric.value(row));
     }
-    // A name that is no UTF-8 shows U+FFFD instead of ending the program.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    return dump(json);
 }
 
 std::string to_csv(const ProfilerReport& profile) {

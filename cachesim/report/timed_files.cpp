@@ -1,11 +1,10 @@
 // A timed report as JSON and as CSV.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "cachesim/report/csv_field.hpp"
+#include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/timed_figures.hpp"
 
 namespace raycache::cachesim {
@@ -14,16 +13,7 @@ using namespace figures;
 
 namespace {
 
-nlohmann::ordered_json json_of(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-nlohmann::ordered_json json_of(const std::optional<Estimate>& e) {
-    if (!e) return {};
-    nlohmann::ordered_json out{{"mean", json_of(e->mean)}, {"half_width", nullptr}};
-    if (e->half_width) out["half_width"] = json_of(*e->half_width);
-    return out;
-}
-nlohmann::ordered_json json_of(const LevelAnswers& a) {
+Json answers_of(const LevelAnswers& a) {
     return {{"requests", a.requests()},
             {"hits", a.hits},
             {"merges", a.merges},
@@ -36,29 +26,29 @@ nlohmann::ordered_json json_of(const LevelAnswers& a) {
 }  // namespace
 
 std::string to_json(const TimedReport& report) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    Json rows = Json::array();
     for (const TimedRow& row : report.rows) {
         const TimedStatistics& t = row.totals;
-        nlohmann::ordered_json out{{"scene", row.series.scene},
-                                   {"strategy", row.series.strategy},
-                                   {"sequence", row.series.sequence},
-                                   {"parameters", row.series.parameters},
-                                   {"thread_map", row.series.thread_map},
-                                   {"gpu", row.series.gpu},
-                                   {"spp", row.series.spp},
-                                   {"samples", samples(row.series)},
-                                   {"cycles", t.cycles},
-                                   {"seconds", json_of(t.seconds)},
-                                   {"cycles_per_ray", json_of(std::optional(row.cycles_per_ray))},
-                                   {"speed_up", json_of(row.speed_up)},
-                                   {"rays", t.rays},
-                                   {"warp_accesses", t.warp_accesses},
-                                   {"lane_accesses", t.lane_accesses},
-                                   {"instructions", t.instructions},
-                                   {"loads", t.loads},
-                                   {"l1", json_of(t.l1)},
-                                   {"l2", json_of(t.l2)}};
-        if (t.l3.requests()) out["l3"] = json_of(t.l3);
+        Json out{{"scene", row.series.scene},
+                 {"strategy", row.series.strategy},
+                 {"sequence", row.series.sequence},
+                 {"parameters", row.series.parameters},
+                 {"thread_map", row.series.thread_map},
+                 {"gpu", row.series.gpu},
+                 {"spp", row.series.spp},
+                 {"samples", samples(row.series)},
+                 {"cycles", t.cycles},
+                 {"seconds", json_of(t.seconds)},
+                 {"cycles_per_ray", json_of(std::optional(row.cycles_per_ray))},
+                 {"speed_up", json_of(row.speed_up)},
+                 {"rays", t.rays},
+                 {"warp_accesses", t.warp_accesses},
+                 {"lane_accesses", t.lane_accesses},
+                 {"instructions", t.instructions},
+                 {"loads", t.loads},
+                 {"l1", answers_of(t.l1)},
+                 {"l2", answers_of(t.l2)}};
+        if (t.l3.requests()) out["l3"] = answers_of(t.l3);
         out["dram_sectors"] = t.dram_sectors;
         out["bottleneck"] = row.waits_most() ? "latency" : row.busiest;
         out["busiest"] = row.busiest;
@@ -72,8 +62,7 @@ std::string to_json(const TimedReport& report) {
         out["visit_latency"] = json_of(visit_latency(t));
         rows.push_back(std::move(out));
     }
-    return nlohmann::ordered_json{{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}}.dump(2) +
-           "\n";
+    return dump({{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}});
 }
 
 std::string to_csv(const TimedReport& report) {

@@ -5,6 +5,7 @@
 
 #include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/waterfall.hpp"
+#include "tests/cachesim/series.hpp"
 
 using namespace raycache::cachesim;
 using Catch::Matchers::Contains;
@@ -13,19 +14,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-Counters counters(std::uint64_t rays, std::uint64_t steps, std::uint64_t accesses, std::uint64_t sectors,
-                  std::uint64_t l2, std::uint64_t dram) {
-    Counters c;
-    c.rays = rays;
-    c.steps = c.lane_accesses = steps;
-    c.warp_accesses = accesses;
-    c.sectors = sectors;
-    c.l2_sectors = l2;
-    c.dram_sectors = dram;
-    c.l1_hits = sectors - l2;
-    c.l2_hits = l2 - dram;
-    return c;
-}
+using test::counters;
 
 /// 40 steps/ray, 0.2 accesses/step, 8 sectors/access, half miss in L1, a quarter of these in L2.
 const Counters plain = counters(10, 400, 80, 640, 320, 80);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cachesim/replay/timed/cycle.hpp"
+#include "cachesim/replay/timed/pool.hpp"
 
 namespace raycache::cachesim {
 
@@ -30,14 +31,7 @@ public:
     /// What should have come before the end of the last take() comes then.
     void push(Cycle time, const Item& item) {
         time = std::max(time, base_);
-        std::uint32_t number = free_;
-        if (number == none) {
-            number = static_cast<std::uint32_t>(entries_.size());
-            entries_.emplace_back();
-        } else {
-            free_ = entries_[number].next;
-        }
-        entries_[number].item = item;
+        const std::uint32_t number = entries_.take({item});
         if (time - base_ < turn_) [[likely]]
             append(time, number);
         else
@@ -61,8 +55,7 @@ public:
                 const std::size_t at = (word * 64 + static_cast<std::size_t>(std::countr_zero(bits))) & (turn_ - 1);
                 for (std::uint32_t number = first_[at]; number != none; number = entries_[number].next)
                     use(entries_[number].item);
-                entries_[last_[at]].next = free_;
-                free_ = first_[at];
+                entries_.give_back(first_[at], last_[at]);
                 first_[at] = none;
             }
         }
@@ -110,8 +103,7 @@ private:
     std::uint64_t pushed_ = 0;
     std::vector<std::uint32_t> first_, last_;  ///< of each cycle, modulo turn_
     std::vector<std::uint64_t> some_;          ///< bit: whether there is one
-    std::vector<Entry> entries_;
-    std::uint32_t free_ = none;
+    Pool<Entry> entries_;
     std::priority_queue<Later, std::vector<Later>, std::greater<>> later_;
 };
 

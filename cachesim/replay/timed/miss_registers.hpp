@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cachesim/replay/timed/cycle.hpp"
+#include "cachesim/replay/timed/pool.hpp"
 
 namespace raycache::cachesim {
 
@@ -40,14 +41,7 @@ public:
 
     /// Must not be full. Returns its number.
     std::uint32_t take(std::uint32_t entry, std::uint32_t sector, Cycle since) {
-        std::uint32_t number = free_;
-        if (number == none) {
-            number = static_cast<std::uint32_t>(registers_.size());
-            registers_.emplace_back();
-        } else {
-            free_ = registers_[number].next;
-        }
-        registers_[number] = {since, never, entry, none, 1, sector, of_entry_[entry]};
+        const std::uint32_t number = registers_.take({since, never, entry, none, 1, sector, of_entry_[entry]});
         of_entry_[entry] = number;
         ++taken_;
         return number;
@@ -58,15 +52,13 @@ public:
         std::uint32_t* link = &of_entry_[registers_[number].entry];
         while (*link != number) link = &registers_[*link].next;
         *link = registers_[number].next;
-        registers_[number].next = free_;
-        free_ = number;
+        registers_.give_back(number);
         --taken_;
     }
 
 private:
     std::uint32_t count_, taken_ = 0;
-    std::uint32_t free_ = none;
-    std::vector<Register> registers_;      ///< those that were ever taken
+    Pool<Register> registers_;
     std::vector<std::uint32_t> of_entry_;  ///< of each entry, the first
 };
 

@@ -18,6 +18,7 @@
 #include "cachesim/replay/timed/event_wheel.hpp"
 #include "cachesim/replay/timed/instruction_flow.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
+#include "cachesim/replay/timed/pool.hpp"
 #include "cachesim/replay/timed/ring.hpp"
 #include "cachesim/replay/timed/timed_cache.hpp"
 #include "cachesim/replay/timed/timed_rules.hpp"
@@ -200,8 +201,7 @@ private:
     std::uint64_t can_issue_ = 0;  ///< bit s: scheduler s has a ready flight, and room for its load
     std::vector<L1> l1s_;
     std::optional<PrivateLevel> private_;
-    std::vector<Waiter> waiters_;
-    std::uint32_t free_waiter_ = none;
+    Pool<Waiter> waiters_;
     EventWheel events_;                    ///< flights whose data are there, and flights that begin a visit
     std::optional<InstructionFlow> flow_;  ///< with operand collectors
     Cycle now_ = 0;

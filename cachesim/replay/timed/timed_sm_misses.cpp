@@ -22,17 +22,7 @@ void send_for_neighbours(TimedCache& cache, std::uint32_t fill_sectors, std::uin
 
 }  // namespace
 
-void TimedSm::wait(std::uint32_t& list, std::uint32_t who, std::uint8_t l1) {
-    std::uint32_t waiter = free_waiter_;
-    if (waiter == none) {
-        waiter = static_cast<std::uint32_t>(waiters_.size());
-        waiters_.emplace_back();
-    } else {
-        free_waiter_ = waiters_[waiter].next;
-    }
-    waiters_[waiter] = {who, list, l1};
-    list = waiter;
-}
+void TimedSm::wait(std::uint32_t& list, std::uint32_t who, std::uint8_t l1) { list = waiters_.take({who, list, l1}); }
 
 /// The arrival of a sector that was sent for is known.
 void TimedSm::arrive_in_l1(std::uint8_t number, std::uint32_t register_number, Cycle time) {
@@ -42,8 +32,7 @@ void TimedSm::arrive_in_l1(std::uint8_t number, std::uint32_t register_number, C
     std::uint32_t waiter = cache.registers()[register_number].waiters;
     while (waiter != none) {
         const Waiter w = waiters_[waiter];
-        waiters_[waiter].next = free_waiter_;
-        free_waiter_ = waiter;
+        waiters_.give_back(waiter);
         waiter = w.next;
         Data& data = data_[w.who];
         data.arrival = std::max(data.arrival, answer_free_);
@@ -63,8 +52,7 @@ void TimedSm::deliver(const MemorySide::Reply& reply) {
     std::uint32_t waiter = cache.registers()[reply.number].waiters;
     while (waiter != none) {
         const Waiter w = waiters_[waiter];
-        waiters_[waiter].next = free_waiter_;
-        free_waiter_ = waiter;
+        waiters_.give_back(waiter);
         waiter = w.next;
         arrive_in_l1(w.l1, w.who, reply.ready);
     }
