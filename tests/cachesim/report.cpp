@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "cachesim/report/timed_report.hpp"
 #include "tests/cachesim/series.hpp"
 #include "traces/error.hpp"
 
@@ -223,6 +224,10 @@ TEST_CASE("JSON keeps every digit and the order of keys") {
 TEST_CASE("names that are no UTF-8 end no program") {
     auto s = series("\xff\xfe", {launch(0, counters(1, 2, 3, 4, 3, 2))});
     CHECK_NOTHROW(to_json(make_report({s}, "", GroupBy::none)));
+    TimedSeries timed;
+    timed.scene = "\xff\xfe";
+    timed.launches.resize(1);
+    CHECK_NOTHROW(to_json(make_timed_report({timed}, "")));
 }
 
 TEST_CASE("CSV has one field per header and quotes what needs it") {
