@@ -114,11 +114,14 @@ BENCHMARK_CAPTURE(replay, gtx_980_ti_from_file, "gtx-980-ti", false)
     ->Iterations(1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, v100, "v100", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(replay, rtx_3070, "rtx-3070", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(replay, rtx_4090, "rtx-4090", true)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(timed_replay, gtx_980_ti, "gtx-980-ti")
     ->Iterations(1)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(timed_replay, v100, "v100")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(timed_replay, rtx_3070, "rtx-3070")->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
