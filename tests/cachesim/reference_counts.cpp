@@ -1,11 +1,10 @@
 // How far the replay is from a published simulator on the reference traces: cachesim/MODEL.md, "Measured".
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <ctime>
 #include <string>
 
 #include "oracle.hpp"
+#include "tests/real_data.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
@@ -40,12 +39,7 @@ double percent_off(std::uint64_t ours, std::uint64_t theirs) {
 
 }  // namespace
 
-TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[slow]") {
-    const auto folder = reference_folder();
-    if (!folder) {
-        WARN("skipped: no reference traces; set RAYCACHE_REFERENCE to their folder");
-        return;
-    }
+TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[slow][data]") {
     const auto published = GENERATE(values<Published>({{"coh", 8, 256, 653133, 153199},
                                                        {"cp", 8, 256, 1027940, 203588},
                                                        {"mj1_64", 8, 256, 791037, 166939},
@@ -62,19 +56,16 @@ TEST_CASE("L1 misses and DRAM sectors stay close to a cycle-level simulator", "[
                                                        {"hr_mj1_1024", 8, 256, 125353, 38640},
                                                        {"cp", 8, 64, 1575140, 203701},
                                                        {"mj1_1024", 8, 64, 1090504, 155652}}));
-    const Launch launch = read_reference(*folder, published.trace);
+    const auto path = raycache::test::reference_trace(published.trace);
+    if (!path) return;
+    const Launch launch = read_rtwarp(*path);
     const Counters counts = replay(rtx_3070_like(published.sms, published.l1_ways), launch).all();
     CAPTURE(published.trace, published.sms, published.l1_ways, counts.l2_sectors, counts.dram_sectors);
     CHECK(std::fabs(percent_off(counts.l2_sectors, published.l1_misses)) < 4.5);
     CHECK(std::fabs(percent_off(counts.dram_sectors, published.dram_sectors)) < 1.2);
 }
 
-TEST_CASE("requests of the front end are as many as those of a cycle-level simulator", "[slow]") {
-    const auto folder = reference_folder();
-    if (!folder) {
-        WARN("skipped: no reference traces; set RAYCACHE_REFERENCE to their folder");
-        return;
-    }
+TEST_CASE("requests of the front end are as many as those of a cycle-level simulator", "[slow][data]") {
     struct Requests {
         const char* trace;
         std::uint64_t requests, loads;
@@ -87,28 +78,10 @@ TEST_CASE("requests of the front end are as many as those of a cycle-level simul
                                                       {"hr_cp", 6192580, 1486741},
                                                       {"hr_mj1_64", 3885537, 1036699},
                                                       {"hr_mj1_1024", 2820657, 883115}}));
-    const Counters counts = replay(rtx_3070_like(8, 256), read_reference(*folder, published.trace)).all();
+    const auto path = raycache::test::reference_trace(published.trace);
+    if (!path) return;
+    const Counters counts = replay(rtx_3070_like(8, 256), read_rtwarp(*path)).all();
     CAPTURE(published.trace);
     CHECK(counts.l1_requests == published.requests);
     CHECK(counts.loads == published.loads);
-}
-
-// Hidden: prints the speed of a replay, cachesim_tests "[speed]".
-TEST_CASE("a replay is fast", "[.speed][slow]") {
-    const auto folder = reference_folder();
-    REQUIRE(folder);
-    for (const char* trace : {"hr_coh", "hr_cp", "cp"})
-        for (const char* gpu : {"gtx-980-ti", "h100"}) {
-            Launch launch = read_reference(*folder, trace);
-            const Warps once = launch.warps;
-            for (int i = 1; i < 4; ++i) launch.warps.insert(launch.warps.end(), once.begin(), once.end());
-            double seconds = 1e9;
-            for (int run = 0; run < 5; ++run) {
-                const std::clock_t start = std::clock();
-                replay(load_gpu(gpu), launch);
-                seconds = std::min(seconds, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
-            }
-            WARN(trace << " on " << gpu << ": " << static_cast<double>(launch.lane_accesses()) / seconds / 1e6
-                       << " million lane accesses per second of CPU time");
-        }
 }

@@ -1,12 +1,9 @@
 #include "reference_trace.hpp"
-#include "tests/folders.hpp"
 
 #include <zstd.h>
 
 #include <bit>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -43,15 +40,8 @@ T take(const std::string& bytes, std::size_t& at) {
 
 }  // namespace
 
-std::optional<std::string> reference_folder() {
-    if (const char* folder = std::getenv("RAYCACHE_REFERENCE")) return folder;
-    const std::string beside = raycache::test::source_folder() + "../shared/reference";
-    if (std::filesystem::exists(beside + "/cp.rtw.zst")) return beside;
-    return std::nullopt;
-}
-
-Launch read_reference(const std::string& folder, const std::string& name) {
-    const std::string bytes = decompressed(folder + "/" + name + ".rtw.zst");
+Launch read_rtwarp(const std::string& path) {
+    const std::string bytes = decompressed(path);
     std::size_t at = 12;
     const auto warps = take<std::uint32_t>(bytes, at);
     at = 40;

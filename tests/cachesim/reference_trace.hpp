@@ -1,9 +1,8 @@
-// Reads the RTWARP01 reference traces (lock-step traversal of Sponza, 256 warps each), if this machine has them.
+// Reads the RTWARP01 reference traces (lock-step traversal of Sponza, 256 warps each; tests/real_data.hpp).
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +24,7 @@ struct Launch {
     }
 };
 
-/// Folder of the reference traces: $RAYCACHE_REFERENCE, or ../shared/reference beside the source tree; nothing if
-/// neither exists.
-std::optional<std::string> reference_folder();
-
-/// FOLDER/NAME.rtw.zst.
-Launch read_reference(const std::string& folder, const std::string& name);
+/// A file compressed by zstd.
+Launch read_rtwarp(const std::string& path);
 
 }  // namespace raycache::cachesim::test

@@ -4,6 +4,7 @@
 
 #include "oracle.hpp"
 #include "random_launch.hpp"
+#include "tests/real_data.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
@@ -168,13 +169,10 @@ TEST_CASE("a replay equals the naive replay where the lines of a launch need mor
                               region(ObjectKind::texel, 1ull << 63, 4, 0xfffffff0u, 0x7fffffffu)});
 }
 
-TEST_CASE("a replay equals the naive replay on the reference traces", "[oracle][slow]") {
-    const auto folder = reference_folder();
-    if (!folder) {
-        WARN("skipped: no reference traces; set RAYCACHE_REFERENCE to their folder");
-        return;
-    }
-    Launch launch = read_reference(*folder, "hr_mj1_1024");
+TEST_CASE("a replay equals the naive replay on the reference traces", "[oracle][slow][data]") {
+    const auto path = raycache::test::reference_trace("hr_mj1_1024");
+    if (!path) return;
+    Launch launch = read_rtwarp(*path);
     launch.warps.resize(80);
     for (const char* name : {"gtx-980-ti", "h100"}) {
         Gpu gpu = load_gpu(name);

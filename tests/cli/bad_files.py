@@ -217,7 +217,7 @@ class BadOutputs(ProgramTest):
             with self.subTest(command[-1]):
                 self.refuses(1, *command, mentions=[command[-1]])
 
-    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
+    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere; run the tests as another user")
     def test_a_folder_without_write_permission(self):
         self.path("locked").mkdir(mode=0o555)
         for command in self.outputs("locked"):
@@ -263,13 +263,13 @@ class BadOutputs(ProgramTest):
                 self.assertEqual(result.code, 1, result)
                 self.assertRegex(result.stderr, r"\Araycache: error: [^\n]+\n\Z")
 
-    @unittest.skipUnless(os.geteuid() == 0, "only root can mount a small disk")
+    @unittest.skipUnless(os.geteuid() == 0, "only root can mount a small disk; run the tests as root")
     def test_a_small_disk_that_fills_up(self):
         with tempfile.TemporaryDirectory() as disk:
             mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", disk], check=False,
                                      stderr=subprocess.DEVNULL)
             if mounted.returncode != 0:
-                self.skipTest("cannot mount a tmpfs here")
+                self.skipTest("cannot mount a tmpfs here; run the tests where root may mount")
             try:
                 for command in self.outputs(disk):
                     if command[0] == "capture" or command[-1].endswith(".exr"):

@@ -102,7 +102,7 @@ class Devices(ProgramTest):
         self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
         self.assertEqual(self.listing(), ["file", "pipe", "t.rct"])
 
-    @unittest.skipUnless(os.geteuid() == 0, "only root can make a device")
+    @unittest.skipUnless(os.geteuid() == 0, "only root can make a device; run the tests as root")
     def test_a_device_is_written_to_and_stays_one(self):
         self.capture("t.rct")
         for name, minor in (("null", 3), ("full", 7)):
@@ -110,7 +110,7 @@ class Devices(ProgramTest):
         try:
             self.path("null").write_bytes(b"x")
         except PermissionError:
-            self.skipTest("devices do not work in this folder")
+            self.skipTest("devices do not work in this folder; set TMPDIR to one not mounted nodev")
         commands = (["export", "t.rct", *SECTORS, "csv"], ["capture", *SCENE, *LAUNCHES],
                     ["export", "t.rct", "--launch", "0", "--format", "accel-sim"], ["verify", "t.rct", "--recover"])
         for command in commands:

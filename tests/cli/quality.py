@@ -3,13 +3,12 @@
 import csv
 import io
 import os
-import pathlib
 import subprocess
 import sys
 
-from support import ROOT, SCENE, ProgramTest, main
+from support import ROOT, SCENE, ProgramTest, main, real_scene
 
-CORNELL = pathlib.Path(os.environ.get("RAYCACHE_SCENES") or ROOT.parent / "shared/scenes") / "cornell_box.glb"
+CORNELL = real_scene("cornell_box.glb")
 SMALL = {"--resolution": "32x32", "--spp": "8", "--bounces": "1", "--reference-spp": "256",
          "--reference-strategy": "cranley-patterson"}
 GPU = ["--gpu", "gtx-980-ti", "--trace-samples", "2"]

@@ -1,19 +1,17 @@
 #!/usr/bin/python3
 """Real scenes through the whole program. They are not part of the project: skipped where they are not at hand."""
-import os
-import pathlib
 import unittest
 
-from support import ROOT, ProgramTest, main
+from support import ProgramTest, main, real_scene
 
-SCENES = pathlib.Path(os.environ.get("RAYCACHE_SCENES") or ROOT.parent / "shared" / "scenes")
+SCENES = real_scene("")
 NAMES = ["sponza.glb", "cornell_box.glb"]
 SMALL = ["--resolution", "64x48", "--trace-samples", "2"]
 STRATEGIES = ["coherent", "cranley-patterson", "micro-jitter"]
-ABSENT = f"no real scenes in {SCENES}; set RAYCACHE_SCENES to their folder"
+ABSENT = f"{' or '.join(NAMES)} is absent; put the .glb files into {SCENES}, or set RAYCACHE_SCENES to their folder"
 
 
-@unittest.skipUnless(all((SCENES / name).is_file() for name in NAMES), ABSENT)
+@unittest.skipUnless(all(real_scene(name).is_file() for name in NAMES), ABSENT)
 class RealScenes(ProgramTest):
     def test_a_picture_is_rendered(self):
         for name in NAMES:

@@ -3,6 +3,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -113,5 +114,21 @@ class ProgramTest(unittest.TestCase):
         return self.path(name)
 
 
+def real_scene(name):
+    """Path of a real scene, in RAYCACHE_SCENES or beside the clone: no part of the project, so it may not exist. CMake
+    labels files that call this as tests to run where there are none (tests/CMakeLists.txt)."""
+    return pathlib.Path(os.environ.get("RAYCACHE_SCENES") or ROOT.parent / "shared" / "scenes") / name
+
+
 def main():
-    unittest.main(verbosity=2)
+    """Runs the tests. Reasons to skip read "what is missing; how to get it"; each becomes a line 'SKIPPED {JSON}', which
+    tools/test_summary.py counts."""
+    result = unittest.main(verbosity=2, exit=False).result
+    failed = {test.id() for test, _ in result.failures + result.errors}
+    for test, reason in result.skipped:
+        name = getattr(test, "test_case", test).id().removeprefix("__main__.")
+        missing, _, remedy = reason.partition("; ")
+        if test.id() not in failed:
+            print("SKIPPED", json.dumps({"test": name, "missing": missing, "remedy": remedy or "see the test"}),
+                  file=sys.stderr)
+    sys.exit(not result.wasSuccessful())

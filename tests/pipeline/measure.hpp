@@ -1,23 +1,21 @@
 // Scene -> capture -> replay, per sample index, for tests that ask what a strategy does to the caches.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <tbb/parallel_for.h>
 
 #include "cachesim/replay/replay.hpp"
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 
 namespace raycache::test {
 
-/// A built-in scene, or a .glb in RAYCACHE_SCENES or ../shared/scenes; nothing if the file is absent. Loaded once.
+/// A built-in scene, or a .glb of tests/real_data.hpp; nothing, and the test is skipped, if it is absent. Loaded once.
 inline const tracer::PreparedScene* find_scene(const std::string& name) {
     static std::map<std::string, std::unique_ptr<tracer::PreparedScene>> loaded;
     const auto found = loaded.find(name);
@@ -25,9 +23,9 @@ inline const tracer::PreparedScene* find_scene(const std::string& name) {
     tracer::SceneRequest request;
     request.source = name;
     if (name.ends_with(".glb")) {
-        const std::filesystem::path path = std::filesystem::path(scenes_folder()) / name;
-        if (!std::filesystem::exists(path)) return nullptr;
-        request.source = path.string();
+        const auto path = real_scene(name);
+        if (!path) return nullptr;
+        request.source = *path;
     }
     auto& slot = loaded[name];
     slot = std::make_unique<tracer::PreparedScene>(tracer::load_scene(request, [](const std::string&) {}),

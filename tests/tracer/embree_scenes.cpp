@@ -1,10 +1,9 @@
 // The traversal against Embree's robust mode on whole scenes, with a judge in double arithmetic for the differences.
 #include <catch2/catch.hpp>
-#include <filesystem>
 
 #include "embree_comparison.hpp"
 #include "path_rays.hpp"
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 
 using namespace raycache::tracer;
 using namespace raycache::tracer::test;
@@ -85,16 +84,12 @@ TEST_CASE("embree: hits equal Embree's on a million rays in each built scene") {
     }
 }
 
-TEST_CASE("embree: hits equal Embree's on a million rays in each real scene", "[slow]") {
+TEST_CASE("embree: hits equal Embree's on a million rays in each real scene", "[slow][data]") {
     for (const char* name : {"cornell_box", "wooden_staircase", "sponza", "contemporary_bathroom", "white_room",
                              "country_kitchen", "bistro_interior", "san_miguel"}) {
         DYNAMIC_SECTION(name) {
-            const std::string path = raycache::test::scenes_folder() + "/" + name + ".glb";
-            if (!std::filesystem::exists(path)) {
-                WARN(path << " is absent: not compared");
-                continue;
-            }
-            compare_on(load_gltf(path, nullptr), {}, 1000000);
+            const auto path = raycache::test::real_scene(name + std::string(".glb"));
+            if (path) compare_on(load_gltf(*path, nullptr), {}, 1000000);
         }
     }
 }

@@ -1,8 +1,7 @@
-// The scenes of SCENES.md, where they are at hand: RAYCACHE_SCENES, or ../shared/scenes beside the source folder.
+// The scenes of SCENES.md, where they are at hand (tests/real_data.hpp).
 #include <catch2/catch.hpp>
-#include <filesystem>
 
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 #include "tests/tracer/gltf_files.hpp"
 
 using namespace raycache;
@@ -122,15 +121,12 @@ std::size_t count_without_area(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("each real scene has the triangles, materials, bounds and cameras that SCENES.md lists", "[slow]") {
+TEST_CASE("each real scene has the triangles, materials, bounds and cameras that SCENES.md lists", "[slow][data]") {
     for (const ExpectedScene& expected : expected_scenes) {
-        const std::string path = raycache::test::scenes_folder() + "/" + expected.file;
-        if (!std::filesystem::exists(path)) {
-            WARN("skipped, not found: " << path);
-            continue;
-        }
+        const auto path = raycache::test::real_scene(expected.file);
+        if (!path) continue;
         INFO(expected.file);
-        const Scene scene = load_file(path).scene;
+        const Scene scene = load_file(*path).scene;
         CHECK(scene.triangle_count() == expected.triangles);
         CHECK(scene.indices.size() == 3 * expected.triangles);
         CHECK(scene.materials.size() == expected.materials);
@@ -154,13 +150,10 @@ TEST_CASE("each real scene has the triangles, materials, bounds and cameras that
     }
 }
 
-TEST_CASE("fronts agree with the stored normals in the scene that mirrors instances", "[slow]") {
-    const std::string path = raycache::test::scenes_folder() + "/san_miguel.glb";
-    if (!std::filesystem::exists(path)) {
-        WARN("skipped, not found: " << path);
-        return;
-    }
-    const Scene scene = load_file(path).scene;
+TEST_CASE("fronts agree with the stored normals in the scene that mirrors instances", "[slow][data]") {
+    const auto path = raycache::test::real_scene("san_miguel.glb");
+    if (!path) return;
+    const Scene scene = load_file(*path).scene;
     std::size_t agree = 0, compared = 0;
     for (std::size_t t = 0; t < scene.triangle_count(); t += 7) {
         const Vec3 n = scene.normals[scene.indices[3 * t]];

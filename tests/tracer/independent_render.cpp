@@ -4,11 +4,10 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <random>
 
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/render.hpp"
 
@@ -84,14 +83,12 @@ private:
 
 }  // namespace
 
-TEST_CASE("independent render: the Cornell box is that of a naive path tracer, however lights are sampled", "[slow]") {
-    const std::string path = raycache::test::scenes_folder() + "/cornell_box.glb";
-    if (!std::filesystem::exists(path)) {
-        WARN(path << " is absent: not compared");
-        return;
-    }
+TEST_CASE("independent render: the Cornell box is that of a naive path tracer, however lights are sampled",
+          "[slow][data]") {
+    const auto path = raycache::test::real_scene("cornell_box.glb");
+    if (!path) return;
     constexpr std::uint32_t side = 12, samples = 20000, bounces = 3;
-    const PreparedScene prepared(load_gltf(path, nullptr), {});
+    const PreparedScene prepared(load_gltf(*path, nullptr), {});
     const Camera& camera = prepared.camera();
     const D3 forward = of(camera.forward), right = unit(cross(forward, of(camera.up))), up = cross(right, forward);
     const double half = std::tan(double{camera.vertical_fov} * std::numbers::pi / 360);

@@ -1,10 +1,9 @@
 // The three ways of finding light give one picture; surfaces, limits and sizes that are extreme give the right one.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 
 #include "path_rays.hpp"
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;
@@ -159,13 +158,10 @@ TEST_CASE("lights: the modes agree with few bounces, with limits per kind, and u
     modes_agree(PreparedScene(std::move(outdoors), {}), limits(2), 16, 100);
 }
 
-TEST_CASE("lights: the Cornell box is the same for bsdf, nee and mis", "[slow]") {
-    const std::string path = raycache::test::scenes_folder() + "/cornell_box.glb";
-    if (!std::filesystem::exists(path)) {
-        WARN(path << " is absent: not compared");
-        return;
-    }
-    modes_agree(PreparedScene(load_gltf(path, nullptr), {}), limits(3), 32, 128);
+TEST_CASE("lights: the Cornell box is the same for bsdf, nee and mis", "[slow][data]") {
+    const auto path = raycache::test::real_scene("cornell_box.glb");
+    if (!path) return;
+    modes_agree(PreparedScene(load_gltf(*path, nullptr), {}), limits(3), 32, 128);
 }
 
 TEST_CASE("lights: bsdf sends no shadow rays, nee the same rays as auto on diffuse surfaces") {

@@ -1,10 +1,9 @@
 // The integrator where the answer is known, and against Embree as the traversal.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 
 #include "path_rays.hpp"
-#include "tests/folders.hpp"
+#include "tests/real_data.hpp"
 #include "tracer/bvh/embree_scene.hpp"
 #include "tracer/paths/embree_traversal.hpp"
 #include "tracer/paths/surface.hpp"
@@ -198,13 +197,10 @@ TEST_CASE(
     CHECK(ours.x != Approx(mean(solid, without_holes, pictures).x).epsilon(0.02));
 }
 
-TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's place", "[slow]") {
-    const std::string path = raycache::test::scenes_folder() + "/cornell_box.glb";
-    if (!std::filesystem::exists(path)) {
-        WARN(path << " is absent: not compared");
-        return;
-    }
-    const PreparedScene prepared(load_gltf(path, nullptr), {});
+TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's place", "[slow][data]") {
+    const auto path = raycache::test::real_scene("cornell_box.glb");
+    if (!path) return;
+    const PreparedScene prepared(load_gltf(*path, nullptr), {});
     const EmbreeScene embree(prepared.scene());
     const EmbreeTraversal traversal(embree);
     const Pictures pictures{128, 8, {4, false}};

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/skip.hpp"
 #include "tracer/sampling/sequence.hpp"
 
 using namespace raycache::tracer;
@@ -16,8 +17,8 @@ namespace {
 constexpr std::uint32_t points = 1024;
 constexpr int no_scipy = 77;
 
-/// Runs a Python program that writes doubles to stdout. Empty, with a warning in the test's output, where Python or
-/// SciPy is missing; a program that fails for another reason fails the test.
+/// Runs a Python program that writes doubles to stdout. Where Python or SciPy is missing the test is skipped, and the
+/// result empty; a program that fails for another reason fails the test.
 std::vector<double> run_python(const std::string& program) {
     const std::string command = "/usr/bin/python3 -c '" + program + "'";
     std::FILE* pipe = popen(command.c_str(), "r");
@@ -30,7 +31,7 @@ std::vector<double> run_python(const std::string& program) {
     const int status = pclose(pipe);
     REQUIRE(WIFEXITED(status));
     if (WEXITSTATUS(status) == no_scipy || WEXITSTATUS(status) == 127) {
-        WARN("skipped: /usr/bin/python3 with SciPy is not installed");
+        raycache::test::skip("/usr/bin/python3 with SciPy is absent", "apt-get install python3-scipy");
         return {};
     }
     REQUIRE(WEXITSTATUS(status) == 0);

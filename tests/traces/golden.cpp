@@ -10,6 +10,7 @@
 #include "files.hpp"
 #include "samples.hpp"
 #include "tests/folders.hpp"
+#include "tests/skip.hpp"
 #include "traces/compression.hpp"
 #include "traces/reader.hpp"
 #include "traces/verify.hpp"
@@ -139,7 +140,10 @@ bool same_zstd() { return std::string(ZSTD_versionString()) == "1.5.4"; }
 }  // namespace
 
 TEST_CASE("the writer still makes the golden files, byte for byte") {
-    if (!same_zstd()) WARN("zstd is not 1.5.4: compressed bytes may differ, comparing the records only");
+    if (!same_zstd())
+        raycache::test::skip(std::string("zstd is ") + ZSTD_versionString() +
+                                 ", not 1.5.4: compressed bytes may differ, so records alone are compared",
+                             "run the tests on Debian 12");
     const TemporaryFolder temporary;
     for (const Good& good : good_files()) {
         INFO(good.name);
