@@ -20,6 +20,6 @@ void add_export(CLI::App&);
 void add_import(CLI::App&);
 void add_samples(CLI::App&);
 void add_list(CLI::App&);
-void add_samples(CLI::App&);
+void add_completion(CLI::App&);
 
 }  // namespace raycache::tools

@@ -6,7 +6,6 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/options.hpp"
-#include "tools/replay_job.hpp"
 #include "tools/report_options.hpp"
 #include "traces/error.hpp"
 
@@ -39,10 +38,7 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     captures.reserve(settings.size());
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    if (o.report.timed)
-        o.report.publish(replay_captures_timed(captures, gpus));
-    else
-        o.report.publish(replay_captures(captures, gpus));
+    o.report.replay_and_publish(sources_of(captures), {}, gpus);
 }
 
 void run(const Options& o) {
@@ -50,12 +46,9 @@ void run(const Options& o) {
         throw UsageError("nothing to compare; expected either trace files or --scene, not both");
     const auto gpus = o.report.load_gpus(o.traces);
     const auto limit = o.threads.apply();
-    if (o.traces.empty())
-        compare_fused(o, gpus);
-    else if (o.report.timed)
-        o.report.publish(replay_files_timed(o.traces, gpus));
-    else
-        o.report.publish(replay_files(o.traces, gpus));
+    if (o.traces.empty()) return compare_fused(o, gpus);
+    const TraceFiles files(o.traces);
+    o.report.replay_and_publish(files.sources, o.traces, gpus);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "tools/explain_job.hpp"
 #include "tools/gpu_options.hpp"
 #include "tools/heat_map.hpp"
+#include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/options.hpp"
 #include "traces/error.hpp"
@@ -24,7 +25,8 @@ struct Options {
     SamplingOptions sampling;
     GpuOptions gpu;
     std::string by = "none", heat_map;
-    bool json = false, counts_only = false;
+    JsonOption json;
+    bool counts_only = false;
     ThreadOptions threads;
 };
 
@@ -52,7 +54,11 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
             fmt::format("{}, N {}, {}, GPU {}", e.scene, e.spp, samples_text(e.base.launches.size()), e.gpu),
             make_heat_map(e.base.name, *sources[0].header, done.costs[0], gpu),
             make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu));
-    print(o.json ? cachesim::to_json(e) : cachesim::to_text(e));
+    if (!o.json) return print(cachesim::to_text(e));
+    JsonSubject subject{{gpu}, {}};
+    for (std::size_t i = 0; i < 2; ++i)
+        subject.traces.push_back(settings_json(*sources[i].header, o.traces.empty() ? "" : o.traces[i]));
+    print(o.json.document(cachesim::to_json(e), subject));
 }
 
 void explain_scene(const Options& o, const cachesim::Gpu& gpu) {
@@ -105,7 +111,7 @@ void add_explain(CLI::App& app) {
                      "the factors also for each: none, bounce (path vertex), ray (camera, bounce, shadow)")
         ->check(CLI::IsMember({"none", "bounce", "ray"}))
         ->capture_default_str();
-    command->add_flag("--json", o->json, "print JSON");
+    o->json.add(*command);
     command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
     command->add_option("--heatmap", o->heat_map,
                         "FILE.exr: DRAM bytes, L1 miss rate and active lanes of each pixel; FILE.png shows them");

@@ -96,7 +96,7 @@ std::string gpu_details_json() {
             out[table][key.substr(dot + 1)] = given;
         }
     }
-    return nlohmann::ordered_json{{"gpus", gpus}}.dump(2) + "\n";
+    return nlohmann::ordered_json{{"gpu_presets", gpus}}.dump(2) + "\n";
 }
 
 }  // namespace raycache::tools

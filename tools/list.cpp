@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/report/json_key.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/gpu_details.hpp"
+#include "tools/json_output.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
@@ -50,7 +52,8 @@ std::vector<Topic> all_topics() {
 
 struct Options {
     std::string topic;
-    bool json = false, details = false;
+    JsonOption json;
+    bool details = false;
 };
 
 void run(const Options& o) {
@@ -58,7 +61,7 @@ void run(const Options& o) {
         if (o.topic != "gpus")
             throw UsageError(
                 fmt::format("--details with topic '{}'; expected 'raycache list gpus --details'", o.topic));
-        print(o.json ? gpu_details_json() : gpu_details_text());
+        print(o.json ? o.json.document(gpu_details_json()) : gpu_details_text());
         return;
     }
     std::vector<Topic> topics = all_topics();
@@ -76,10 +79,11 @@ void run(const Options& o) {
         text += (text.empty() ? "" : "\n") + topic.name + "\n";
         for (const Entry& e : topic.entries) {
             text += fmt::format("  {:<{}}  {}\n", e.name, width, e.description);
-            json[topic.name].push_back({{"name", e.name}, {"description", e.description}});
+            json["topics"][cachesim::snake_case(topic.name)].push_back(
+                {{"name", e.name}, {"description", e.description}});
         }
     }
-    print(o.json ? json.dump(2) + "\n" : text);
+    print(o.json ? o.json.document(json_text(json)) : text);
 }
 
 }  // namespace
@@ -90,7 +94,7 @@ void add_list(CLI::App& app) {
         "list", "List strategies, sequences, GPUs, layouts, thread maps, ray orders, built-in scenes");
     command->add_option("TOPIC", o->topic,
                         "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all");
-    command->add_flag("--json", o->json, "print JSON");
+    o->json.add(*command);
     command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
     command->footer(
         "Examples:\n  raycache list\n  raycache list gpus --json\n  raycache list gpus --details\n"

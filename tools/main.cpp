@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
     tools::add_import(app);
     tools::add_samples(app);
     tools::add_list(app);
+    tools::add_completion(app);
     check_counts(app);
     try {
         app.parse(argc, argv);

@@ -43,7 +43,9 @@ void run(const Options& o) {
     }
     const QualityReport report = o.common.measure(std::move(request), pictures);
     if (!o.output.empty()) write_quality_pictures(o.output, report, crop);
-    print(o.common.json ? to_json(report) : o.common.csv ? to_csv(report) : to_text(report));
+    print(o.common.json  ? o.common.json.document(to_json(report), report.subject)
+          : o.common.csv ? to_csv(report)
+                         : to_text(report));
 }
 
 }  // namespace

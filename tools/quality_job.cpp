@@ -95,7 +95,7 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
 void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows) {
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const QualityRow& row : rows) captures.push_back(std::make_unique<tracer::Capture>(scene, row.settings));
-    const auto series = replay_captures_timed(captures, {gpu});
+    const auto series = replay_timed(sources_of(captures), {gpu});
     std::vector<cachesim::Sums> cycles(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
         double seconds = 0, samples = 0;

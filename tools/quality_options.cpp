@@ -32,7 +32,7 @@ void QualityOptions::add(CLI::App& app, bool require_gpu) {
     sampling.add_launches(app);
     sampling.add_picture(app);
     sampling.add_strategy(app);
-    app.add_flag("--json", json, "print JSON");
+    json.add(app);
     app.add_flag("--csv", csv, "print CSV");
     threads.add(app);
 }
@@ -72,6 +72,7 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";
+    result.subject.gpus = gpus;
     result.reference_spp = reference_spp;
     result.repeats = repeats;
     result.width = first.width;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/gpu_options.hpp"
+#include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/quality_report.hpp"
 
@@ -15,7 +16,8 @@ struct QualityOptions {
     SamplingOptions sampling;
     GpuOptions gpu;  ///< at most one
     std::string baseline;
-    bool json = false, csv = false;
+    JsonOption json;
+    bool csv = false;
     ThreadOptions threads;
     std::uint64_t reference_spp = 1024, repeats = 1;
     std::string reference_file, reference_strategy = "random";

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/json_output.hpp"
 #include "tools/quality_job.hpp"
 
 namespace raycache::tools {
@@ -16,6 +17,7 @@ struct QualityReport {
     tracer::Image reference;
     std::vector<QualityRow> rows;
     std::vector<std::string> notes;
+    JsonSubject subject;
 };
 
 /// Which mu a sweep advises, and what it accepted.

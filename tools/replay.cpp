@@ -1,7 +1,6 @@
 // raycache replay: one trace through one or more GPUs.
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
-#include "tools/replay_job.hpp"
 #include "tools/report_options.hpp"
 
 namespace raycache::tools {
@@ -16,10 +15,8 @@ struct Options {
 void run(const Options& o) {
     const auto gpus = o.report.load_gpus({o.path});
     const auto limit = o.threads.apply();
-    if (o.report.timed)
-        o.report.publish(replay_files_timed({o.path}, gpus));
-    else
-        o.report.publish(replay_files({o.path}, gpus));
+    const TraceFiles files({o.path});
+    o.report.replay_and_publish(files.sources, {o.path}, gpus);
 }
 
 }  // namespace

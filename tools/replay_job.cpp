@@ -3,18 +3,18 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "cachesim/replay/replay.hpp"
 #include "tools/console.hpp"
-#include "tools/launch_source.hpp"
 
 namespace raycache::tools {
 namespace {
 
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
-std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                           const MakeReplay& make_replay) {
+std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
+                                const MakeReplay& make_replay) {
     std::vector<Series> series;
     std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
     std::uint64_t warps = 0;
@@ -63,9 +63,10 @@ std::vector<Series> replay(const std::vector<LaunchSource>& sources, const std::
     return series;
 }
 
-std::vector<cachesim::Series> replay_functional(const std::vector<LaunchSource>& sources,
-                                                const std::vector<cachesim::Gpu>& gpus) {
-    return replay<cachesim::Series>(
+}  // namespace
+
+std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus) {
+    return replay_with<cachesim::Series>(
         sources, gpus, [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::Replay(gpu, regions, sample);
         });
@@ -74,36 +75,10 @@ std::vector<cachesim::Series> replay_functional(const std::vector<LaunchSource>&
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>& sources,
                                                 const std::vector<cachesim::Gpu>& gpus,
                                                 const cachesim::Idealised& ideal) {
-    return replay<cachesim::TimedSeries>(
+    return replay_with<cachesim::TimedSeries>(
         sources, gpus, [&](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::TimedReplay(gpu, regions, sample, ideal);
         });
-}
-
-}  // namespace
-
-std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths,
-                                           const std::vector<cachesim::Gpu>& gpus) {
-    const TraceFiles files(paths);
-    return replay_functional(files.sources, gpus);
-}
-
-std::vector<cachesim::TimedSeries> replay_files_timed(const std::vector<std::string>& paths,
-                                                      const std::vector<cachesim::Gpu>& gpus,
-                                                      const cachesim::Idealised& ideal) {
-    const TraceFiles files(paths);
-    return replay_timed(files.sources, gpus, ideal);
-}
-
-std::vector<cachesim::Series> replay_captures(const std::vector<std::unique_ptr<tracer::Capture>>& captures,
-                                              const std::vector<cachesim::Gpu>& gpus) {
-    return replay_functional(sources_of(captures), gpus);
-}
-
-std::vector<cachesim::TimedSeries> replay_captures_timed(const std::vector<std::unique_ptr<tracer::Capture>>& captures,
-                                                         const std::vector<cachesim::Gpu>& gpus,
-                                                         const cachesim::Idealised& ideal) {
-    return replay_timed(sources_of(captures), gpus, ideal);
 }
 
 }  // namespace raycache::tools

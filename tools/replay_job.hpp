@@ -2,31 +2,21 @@
 // fly; both hand the same warps to the same replay, so both give the same numbers.
 #pragma once
 
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
-#include "tracer/capture.hpp"
+#include "tools/launch_source.hpp"
 
 namespace raycache::tools {
 
-/// One series per file and GPU, files first. Throws Error as traces::Reader does.
-std::vector<cachesim::Series> replay_files(const std::vector<std::string>& paths, const std::vector<cachesim::Gpu>&);
+/// One series per source and GPU, sources first. Throws Error as traces::Reader does.
+std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&);
 
 /// The same in time.
-std::vector<cachesim::TimedSeries> replay_files_timed(const std::vector<std::string>& paths,
-                                                      const std::vector<cachesim::Gpu>&,
-                                                      const cachesim::Idealised& = {});
-
-/// replay_files() without files: captures and replays launch by launch.
-std::vector<cachesim::Series> replay_captures(const std::vector<std::unique_ptr<tracer::Capture>>&,
-                                              const std::vector<cachesim::Gpu>&);
-std::vector<cachesim::TimedSeries> replay_captures_timed(const std::vector<std::unique_ptr<tracer::Capture>>&,
-                                                         const std::vector<cachesim::Gpu>&,
-                                                         const cachesim::Idealised& = {});
+std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
+                                                const cachesim::Idealised& = {});
 
 }  // namespace raycache::tools

@@ -6,6 +6,7 @@
 
 #include "cachesim/report/profiler.hpp"
 #include "tools/console.hpp"
+#include "tools/replay_job.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 
@@ -37,14 +38,15 @@ std::string baseline_of(const std::vector<Series>& series, const std::string& as
 }
 
 template <class Report>
-void publish_report(const Report& report, const ReportOptions& o) {
+void publish(const Report& report, const JsonSubject& subject, const ReportOptions& o) {
     using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
+    const auto json = [&] { return o.json.document(to_json(report), subject); };
     if (!o.save.empty()) {
         save_text(o.save + ".txt", to_text(report));
-        save_text(o.save + ".json", to_json(report));
+        save_text(o.save + ".json", json());
         save_text(o.save + ".csv", to_csv(report));
     }
-    print(o.json ? to_json(report) : o.csv ? to_csv(report) : to_text(report));
+    print(o.json ? json() : o.csv ? to_csv(report) : to_text(report));
 }
 
 }  // namespace
@@ -63,7 +65,7 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
     if (with_baseline)
         app.add_option("--baseline", baseline,
                        "strategy that ratios refer to; default: cranley-patterson where it is compared");
-    app.add_flag("--json", json, "print JSON");
+    json.add(app);
     app.add_flag("--csv", csv, "print CSV");
     app.add_option("--counters", counters,
                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
@@ -99,16 +101,21 @@ FileNames ReportOptions::outputs() const {
     return {save + ".txt", save + ".json", save + ".csv"};
 }
 
-void ReportOptions::publish(const std::vector<cachesim::Series>& series) const {
+void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
+                                       const std::vector<cachesim::Gpu>& loaded) const {
+    JsonSubject subject{loaded, {}};
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        subject.traces.push_back(settings_json(*sources[i].header, files.empty() ? "" : files[i]));
+    if (timed) {
+        const auto series = replay_timed(sources, loaded);
+        return publish(cachesim::make_timed_report(series, baseline_of(series, baseline)), subject, *this);
+    }
+    const auto series = replay(sources, loaded);
     const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
     if (counters.empty())
-        publish_report(report, *this);
+        publish(report, subject, *this);
     else
-        publish_report(cachesim::ProfilerReport{report}, *this);
-}
-
-void ReportOptions::publish(const std::vector<cachesim::TimedSeries>& series) const {
-    publish_report(cachesim::make_timed_report(series, baseline_of(series, baseline)), *this);
+        publish(cachesim::ProfilerReport{report}, subject, *this);
 }
 
 }  // namespace raycache::tools

@@ -8,6 +8,8 @@
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/gpu_options.hpp"
+#include "tools/json_output.hpp"
+#include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
 
 namespace raycache::tools {
@@ -16,19 +18,21 @@ struct ReportOptions {
     GpuOptions gpus;
     bool timed = false;
     std::string by = "none", baseline, save, counters;
-    bool json = false, csv = false;
+    JsonOption json;
+    bool csv = false;
 
     void add(CLI::App&, bool with_baseline);
 
-    /// Refuses what cannot be printed together, GPUs that cannot be asked so, and inputs that publish() would
-    /// overwrite: all before anything takes time. `inputs`: files that are read beside those of the GPUs.
+    /// Refuses what cannot be printed together, GPUs that cannot be asked so, and inputs that replay_and_publish()
+    /// would overwrite: all before anything takes time. `inputs`: files that are read beside those of the GPUs.
     std::vector<cachesim::Gpu> load_gpus(const FileNames& inputs) const;
-    /// The files that publish() writes.
+    /// The files that replay_and_publish() writes.
     FileNames outputs() const;
 
-    /// Makes the report of `series`, prints it in the chosen format, and saves all formats where asked.
-    void publish(const std::vector<cachesim::Series>& series) const;
-    void publish(const std::vector<cachesim::TimedSeries>& series) const;
+    /// Replays all sources on all GPUs, makes the report, prints it in the chosen format, and saves all formats where
+    /// asked. `files`: the names of the sources, empty for captures.
+    void replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
+                            const std::vector<cachesim::Gpu>&) const;
 
 private:
     void check() const;

@@ -5,6 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/outputs.hpp"
 #include "tools/samples_picture.hpp"
@@ -22,7 +23,7 @@ struct Options {
     std::vector<std::uint32_t> dimensions{0, 1};
     SamplingOptions sampling;
     std::string csv, picture, figure2, table;
-    bool json = false;
+    JsonOption json;
     ThreadOptions threads;
 };
 
@@ -71,7 +72,7 @@ void run(const Options& o) {
         if (!o.csv.empty() || !o.picture.empty() || !o.figure2.empty())
             throw UsageError("--table with --csv, --picture or --figure2; expected --table NAME [--json] alone");
         const SamplesTable table = make_samples_table(o.table);
-        print(o.json ? table.json() : table.text());
+        print(o.json ? o.json.document(table.json()) : table.text());
         return;
     }
     refuse_stdout("--csv", o.csv);
@@ -90,7 +91,7 @@ void run(const Options& o) {
             draw_samples(subject(o),
                          {{o.strategy + (samples.parameters.empty() ? "" : " ") + samples.parameters, &samples}}));
     if (!o.figure2.empty()) write_figure2(o);
-    print(o.json ? to_json(samples) : to_text(samples));
+    print(o.json ? o.json.document(to_json(samples)) : to_text(samples));
 }
 
 }  // namespace
@@ -120,7 +121,7 @@ void add_samples(CLI::App& app) {
         ->add_option("--table", o->table,
                      "instead of one strategy, a table of docs/sampling.md: " + samples_table_names())
         ->type_name("NAME");
-    command->add_flag("--json", o->json, "print JSON");
+    o->json.add(*command);
     o->threads.add(*command);
     command->footer(
         "Examples:\n"

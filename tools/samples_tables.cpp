@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "cachesim/report/json_key.hpp"
 #include "tracer/sampling/hash.hpp"
 #include "tracer/sampling/measures/jitter_variants.hpp"
 #include "tracer/sampling/measures/largest_hole.hpp"
@@ -198,7 +199,7 @@ std::vector<FieldError> measure_variant(JitterVariant variant, std::uint32_t n, 
 
 SamplesTable boundary() {
     SamplesTable table{"Jitter beyond the border, sobol, K = 2: mean squared error",
-                       {"border", "N", "periodic", "lobe", "ramp", "12 scenes"},
+                       {"border", "N", "periodic", "lobe", "ramp", "all 12 scenes"},
                        {}};
     constexpr std::array<std::pair<const char*, JitterVariant>, 3> variants{
         {{"wrap", JitterVariant::wrap}, {"clamp", JitterVariant::clamp}, {"reflect", JitterVariant::reflect}}};
@@ -277,12 +278,21 @@ std::string SamplesTable::text() const {
     return text;
 }
 
+namespace {
+
+/// A column of an N is titled by the number alone.
+std::string key_of(const std::string& title) {
+    return title.find_first_not_of("0123456789") == std::string::npos ? "n_" + title : cachesim::snake_case(title);
+}
+
+}  // namespace
+
 std::string SamplesTable::json() const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const auto& row : rows) {
         nlohmann::ordered_json object;
         for (std::size_t c = 0; c < columns.size(); ++c)
-            std::visit([&](const auto& cell) { object[columns[c]] = cell; }, row[c]);
+            std::visit([&](const auto& cell) { object[key_of(columns[c])] = cell; }, row[c]);
         list.push_back(std::move(object));
     }
     return nlohmann::ordered_json{{"title", title}, {"rows", list}}.dump(2) + "\n";

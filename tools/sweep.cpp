@@ -96,7 +96,7 @@ void run(const Options& o) {
     const QualityReport report = o.common.measure(std::move(request), {});
     const Recommendation advice = recommend(o, report);
     if (o.common.json)
-        print(to_json(report, &advice));
+        print(o.common.json.document(to_json(report, &advice), report.subject));
     else if (o.common.csv)
         print(to_csv(report));
     else

@@ -6,6 +6,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/json_output.hpp"
 #include "tools/outputs.hpp"
 #include "traces/verify.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 struct Options {
     std::string path, recovered;
-    bool json = false;
+    JsonOption json;
 };
 
 void run(const Options& o) {
@@ -27,20 +28,20 @@ void run(const Options& o) {
         out = {{"blocks", r.blocks},
                {"warps", r.warps},
                {"records", r.records},
-               {"lane accesses", r.lane_accesses},
+               {"lane_accesses", r.lane_accesses},
                {"rays", r.rays}};
         text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n", o.path, r.blocks,
                            r.warps, r.records, r.lane_accesses, r.rays);
     } else {
         const traces::RecoverResult r = traces::recover(o.path, o.recovered);
-        out = {{"launches kept", r.launches_kept},
-               {"launches lost", r.launches_lost},
-               {"blocks kept", r.blocks_kept},
-               {"blocks lost", r.blocks_lost}};
+        out = {{"launches_kept", r.launches_kept},
+               {"launches_lost", r.launches_lost},
+               {"blocks_kept", r.blocks_kept},
+               {"blocks_lost", r.blocks_lost}};
         text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", o.recovered, r.launches_kept,
                            r.launches_kept + r.launches_lost, r.blocks_kept);
     }
-    print(o.json ? out.dump(2) + "\n" : text);
+    print(o.json ? o.json.document(json_text(out)) : text);
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ void add_verify(CLI::App& app) {
     CLI::App* command = app.add_subcommand("verify", "Check every checksum and record of a trace");
     command->add_option("TRACE", o->path, "trace file")->required();
     command->add_option("--recover", o->recovered, "write the launches that are whole to this new trace");
-    command->add_flag("--json", o->json, "print JSON");
+    o->json.add(*command);
     command->footer("Examples:\n  raycache verify mj.rct\n  raycache verify damaged.rct --recover rest.rct");
     command->callback([o] { run(*o); });
 }

@@ -3,7 +3,7 @@
 
 usage: traces/read_trace.py FILE          one line per warp and the digest of the dump
        traces/read_trace.py FILE --dump   every record, as text
-As a module: Trace(path).warps() yields (launch, warp, [(mask, region, ray, bounce, elements), ...])."""
+As a module, raycache.traces where installed: Trace(path).warps() yields (launch, warp, [(mask, region, ray, bounce, elements), ...])."""
 import struct
 import sys
 

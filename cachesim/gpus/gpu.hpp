@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cachesim/gpus/timing.hpp"
@@ -75,6 +76,8 @@ struct FrontEnd {
 struct Gpu {
     std::string name;         ///< "gtx-980-ti"; with what was changed, "gtx-980-ti (l1.ways=64, sms=16)"
     std::string description;  ///< "GeForce GTX 980 Ti (GM200, Maxwell)"
+    /// KEY and VALUE of what load_gpu() was told to change, as they stand in the name.
+    std::vector<std::pair<std::string, std::string>> changes;
     std::uint32_t sms = 0;
     std::uint32_t warps_per_sm = 0;      ///< resident at once; a multiple of the CTA size is not required
     std::uint32_t max_warps_per_sm = 0;  ///< that an SM can hold, whatever the kernel; 0: not known

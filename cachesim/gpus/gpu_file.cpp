@@ -213,14 +213,15 @@ Gpu read(TomlReader& file) {
     return gpu;
 }
 
-/// " (l1.ways=64, sms=16)": the values of these keys, as the GPU has them. What has no value of its own, a name, is
-/// passed over.
-std::string list_of(const std::set<std::string>& keys, const std::vector<GpuValue>& values) {
-    std::string list;
+/// The values of these keys, as the GPU has them. What has no value of its own, a name, is passed over.
+void note_changes(Gpu& gpu, const std::set<std::string>& keys, const std::vector<GpuValue>& values) {
     for (const std::string& key : keys)
         for (const GpuValue& v : values)
-            if (v.key == key) list += fmt::format("{}{}={}", list.empty() ? " (" : ", ", key, v.value);
-    return list.empty() ? list : list + ')';
+            if (v.key == key) gpu.changes.emplace_back(key, v.value);
+    if (gpu.changes.empty()) return;
+    std::string list;
+    for (const auto& [key, value] : gpu.changes) list += fmt::format("{}{}={}", list.empty() ? "" : ", ", key, value);
+    gpu.name += fmt::format(" ({})", list);
 }
 
 }  // namespace
@@ -230,7 +231,7 @@ Gpu parse_gpu(const std::string& toml, const std::string& file, const std::vecto
     std::set<std::string> changed;
     for (const std::string& change : changes) changed.insert(reader.change(change));
     Gpu gpu = read(reader);
-    gpu.name += list_of(changed, reader.values());
+    note_changes(gpu, changed, reader.values());
     return gpu;
 }
 

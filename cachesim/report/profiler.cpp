@@ -108,7 +108,7 @@ std::string to_json(const ProfilerReport& profile) {
     for (const Row& row : profile.report.rows) {
         Json& out = json["rows"].emplace_back(row_names(row));
         for (const Metric& metric : metrics_of(profile.report))
-            out["metrics"][metric.name] = to_json(metric.value(row));
+            out["metrics"].push_back({{"name", metric.name}, {"value", to_json(metric.value(row))}});
     }
     return dump(json);
 }

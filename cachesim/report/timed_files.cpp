@@ -4,6 +4,7 @@
 #include <span>
 
 #include "cachesim/report/csv_field.hpp"
+#include "cachesim/report/json_key.hpp"
 #include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/timed_figures.hpp"
 
@@ -54,7 +55,7 @@ std::string to_json(const TimedReport& report) {
         out["busiest"] = row.busiest;
         out["occupancy"] = json_of(t.occupancy());
         for (const auto& list : {std::span<const Named>(resources), std::span<const Named>(parts)})
-            for (const Named& r : list) out["utilisation"][r.name] = json_of(utilisation(t, t.*r.resource));
+            for (const Named& r : list) out["utilisation"][snake_case(r.name)] = json_of(utilisation(t, t.*r.resource));
         out["l2_gb_s"] = json_of(l2_gb_s(row));
         out["l2_peak_gb_s"] = json_of(t.peak_l2_gb_s);
         out["dram_gb_s"] = json_of(dram_gb_s(row));

@@ -18,7 +18,7 @@ class BadCommandLines(ProgramTest):
         self.refuses(2, *command, *small, *options, **keywords)
 
     def names(self, topic):
-        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json[topic]]
+        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json["topics"][topic.replace("-", "_")]]
 
     def test_no_subcommand_an_unknown_one_and_an_unknown_option(self):
         self.refuses(2)

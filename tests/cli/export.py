@@ -85,7 +85,7 @@ policy = "fifo"
 
     def test_of_several_launches_the_first_is_exported_with_a_warning_unless_one_is_asked_for(self):
         trace = self.capture()
-        samples = self.succeeds("info", trace, "--json").json["sample indices"]
+        samples = self.succeeds("info", trace, "--json").json["traces"][0]["samples"]
         for form in (["u64", *H100, "--level", "l2"], ["accel-sim"]):
             export = ["export", trace, "--format", *form, "-o"]
             name = "x.traceg" if form[0] == "accel-sim" else "x"

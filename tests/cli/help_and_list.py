@@ -38,8 +38,8 @@ class HelpAndList(ProgramTest):
             self.assertRegex(text, rf"(?m)^{topic}$")
 
     def test_list_gives_each_name_a_description_in_text_and_in_json(self):
-        listed = self.succeeds("list", "--json").json
-        self.assertEqual(list(listed), TOPICS)
+        listed = self.succeeds("list", "--json").json["topics"]
+        self.assertEqual(list(listed), [topic.replace("-", "_") for topic in TOPICS])
         text = self.succeeds("list").text
         for topic, entries in listed.items():
             self.assertGreater(len(entries), 0, topic)
@@ -47,11 +47,12 @@ class HelpAndList(ProgramTest):
                 self.assertRegex(entry["name"], r"\A[a-z0-9-]+\Z")
                 self.assertGreater(len(entry["description"]), 10, entry)
                 self.assertIn(f"  {entry['name']}", text)
-            self.assertEqual(self.succeeds("list", topic, "--json").json, {topic: entries})
+            one = self.succeeds("list", topic.replace("_", "-"), "--json").report
+            self.assertEqual(one, {"topics": {topic: entries}})
 
     def test_the_details_of_the_gpus_give_every_value_with_its_source_in_text_and_in_json(self):
-        listed = self.succeeds("list", "gpus", "--json").json["gpus"]
-        gpus = self.succeeds("list", "gpus", "--details", "--json").json["gpus"]
+        listed = self.succeeds("list", "gpus", "--json").json["topics"]["gpus"]
+        gpus = self.succeeds("list", "gpus", "--details", "--json").json["gpu_presets"]
         self.assertEqual([gpu["name"] for gpu in gpus], [gpu["name"] for gpu in listed])
         text = self.succeeds("list", "gpus", "--details").text
         for gpu in gpus:
@@ -72,7 +73,7 @@ class HelpAndList(ProgramTest):
 
     def test_every_listed_strategy_sequence_gpu_and_thread_map_works(self):
         listed = {topic: ",".join(entry["name"] for entry in entries)
-                  for topic, entries in self.succeeds("list", "--json").json.items()}
+                  for topic, entries in self.succeeds("list", "--json").json["topics"].items()}
         for options in (["--strategy", listed["strategies"], "--gpu", listed["gpus"]],
                         ["--strategy", "micro-jitter", "--sequence", listed["sequences"], *GPU]):
             report = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, *options, "--json").json
@@ -80,13 +81,13 @@ class HelpAndList(ProgramTest):
                 if option in options:
                     wanted = set(options[options.index(option) + 1].split(","))
                     self.assertEqual({row[key] for row in report["rows"]}, wanted)
-        for name in listed["thread-maps"].split(","):
+        for name in listed["thread_maps"].split(","):
             report = self.succeeds("compare", "--scene", *SCENE, *PICTURE, "--trace-samples", "32", "--bounces", "0",
                                    "--thread-map", name, "--strategy", "coherent", *GPU, "--json").json
             self.assertEqual({row["thread_map"].split(":")[0] for row in report["rows"]}, {name})
 
     def test_every_listed_scene_renders(self):
-        for entry in self.succeeds("list", "scenes", "--json").json["scenes"]:
+        for entry in self.succeeds("list", "scenes", "--json").json["topics"]["scenes"]:
             self.succeeds("render", entry["name"], "--resolution", "16x16", "--spp", "1", "-o", entry["name"] + ".png")
 
 

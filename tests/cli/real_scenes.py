@@ -27,16 +27,16 @@ class RealScenes(ProgramTest):
                 self.assertEqual(info["scene"], name)
                 self.assertEqual(self.succeeds("verify", "trace.rct", "--json").json["rays"], info["rays"])
                 row, = self.succeeds("replay", "trace.rct", "--gpu", "h100", "--json").json["rows"]
-                self.assertEqual(row["totals"]["lane_accesses"], info["lane accesses"])
+                self.assertEqual(row["totals"]["lane_accesses"], info["lane_accesses"])
 
-    def test_files_and_the_fused_comparison_give_the_same_bytes(self):
+    def test_files_and_the_fused_comparison_give_the_same_report(self):
         gpus = ["--gpu", "gtx-980-ti", "--gpu", "h100", "--by", "object", "--json"]
         for name in NAMES:
             with self.subTest(name):
                 for strategy in STRATEGIES:
                     self.warns("capture", SCENES / name, *SMALL, "--strategy", strategy, "-o", strategy + ".rct")
-                files = self.succeeds("compare", *(s + ".rct" for s in STRATEGIES), *gpus).stdout
-                fused = self.warns("compare", "--scene", SCENES / name, *SMALL, *gpus).stdout
+                files = self.succeeds("compare", *(s + ".rct" for s in STRATEGIES), *gpus).report
+                fused = self.warns("compare", "--scene", SCENES / name, *SMALL, *gpus).report
                 self.assertEqual(fused, files)
 
     def test_threads_do_not_change_a_trace(self):

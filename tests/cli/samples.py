@@ -46,7 +46,7 @@ class Samples(ProgramTest):
         text = self.succeeds("samples", "--table", "discrepancy").text
         self.assertTrue(text.startswith(table["title"]))
         self.assertEqual(len(text.splitlines()), len(table["rows"]) + 4)
-        self.assertAlmostEqual(table["rows"][0]["hole-free K"], 1.955, delta=0.002)
+        self.assertAlmostEqual(table["rows"][0]["hole_free_k"], 1.955, delta=0.002)
 
     def test_help_has_an_example_of_the_figure(self):
         self.assertIn("raycache samples --figure2 figure2.png", self.succeeds("samples", "--help").text)

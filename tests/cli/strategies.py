@@ -12,7 +12,7 @@ class Strategies(ProgramTest):
         return self.succeeds("info", "trace.rct", "--json").json
 
     def names(self, topic):
-        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json[topic]]
+        return [entry["name"] for entry in self.succeeds("list", topic, "--json").json["topics"][topic.replace("-", "_")]]
 
     def test_every_pair_is_compared_or_refused_with_a_reason(self):
         strategies = self.names("strategies")

@@ -15,6 +15,8 @@ SCENE = ["courtyard", "--detail", "50000"]
 PICTURE = ["--resolution", "64x48"]
 LAUNCHES = PICTURE + ["--trace-samples", "2"]
 GPU = ["--gpu", "gtx-980-ti"]
+# What every JSON document begins with.
+ENVELOPE = ["schema_version", "program", "version", "command", "command_line", "settings", "gpus", "traces"]
 # Two SMs, and no times.
 GPU_FILE = """
 name = "tiny"
@@ -47,6 +49,11 @@ class Result:
     @property
     def json(self):
         return json.loads(self.stdout)
+
+    @property
+    def report(self):
+        """The JSON without its envelope: what was found, not what was asked for."""
+        return {key: value for key, value in self.json.items() if key not in ENVELOPE}
 
     def __repr__(self):
         return f"exit code {self.code}\n--- stdout\n{self.stdout[:2000]!r}\n--- stderr\n{self.stderr[:4000]}"

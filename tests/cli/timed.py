@@ -52,7 +52,7 @@ class Timed(ProgramTest):
 
     def test_every_preset_can_be_timed_and_one_without_times_says_what_it_lacks(self):
         trace = self.capture("trace.rct", "--bounces", "0")
-        names = [gpu["name"] for gpu in self.succeeds("list", "gpus", "--details", "--json").json["gpus"]]
+        names = [gpu["name"] for gpu in self.succeeds("list", "gpus", "--details", "--json").json["gpu_presets"]]
         self.assertGreaterEqual(len(names), 11)
         for name in names:
             row = self.succeeds("replay", trace, "--gpu", name, "--timed", "--json").json["rows"][0]

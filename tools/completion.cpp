@@ -1,0 +1,137 @@
+// raycache completion: prints a script that completes raycache's command lines. Hidden: packages and users' start-up
+// files call it; `cmake --install` does.
+#include "tools/completion.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "tools/commands.hpp"
+#include "tools/console.hpp"
+#include "tools/samples_tables.hpp"
+#include "tracer/sampling/decorrelation.hpp"
+#include "tracer/sampling/sequence.hpp"
+#include "tracer/scene/scene.hpp"
+#include "tracer/simt/orders/ray_order.hpp"
+
+namespace raycache::tools {
+namespace {
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+    std::vector<std::string> names;
+    for (const auto& item : list) names.push_back(item.name);
+    return names;
+}
+
+/// Every key of every preset, as --set takes it.
+std::vector<std::string> gpu_keys() {
+    std::vector<std::string> keys;
+    for (const cachesim::GpuPreset& preset : cachesim::gpu_presets())
+        for (const cachesim::GpuValue& value : cachesim::gpu_values(preset.name)) keys.push_back(value.key + '=');
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+}
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> words = CLI::detail::split(list, ',');
+    for (std::string& word : words) CLI::detail::trim(word);
+    return words;
+}
+
+/// The names of a CLI::IsMember check, which says them in its description: "{a,b}".
+std::vector<std::string> checked_names(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const std::size_t open = type.find('{'), close = type.find('}');
+    if (open == std::string::npos || close == std::string::npos || close < open) return {};
+    return split(type.substr(open + 1, close - open - 1));
+}
+
+/// What options and positional arguments of these names take, in every command.
+const std::map<std::string, Candidates>& known() {
+    static const std::map<std::string, Candidates> table = [] {
+        const std::vector<std::string> strategies = names_of(tracer::decorrelations()),
+                                       scenes = names_of(tracer::builtin_scenes());
+        const Candidates any_file{{}, {"*"}}, traces{{}, {"rct"}}, scene{scenes, {"glb", "gltf"}},
+            trace_or_scene{scenes, {"rct", "glb", "gltf"}}, strategy{strategies, {}};
+        return std::map<std::string, Candidates>{
+            {"--strategy", strategy},
+            {"--baseline", strategy},
+            {"--swept", strategy},
+            {"--reference-strategy", strategy},
+            {"--sequence", {names_of(tracer::sequences()), {}}},
+            {"--order", {names_of(tracer::ray_orders()), {}}},
+            {"--gpu", {names_of(cachesim::gpu_presets()), {"toml"}}},
+            {"--set", {gpu_keys(), {}}},
+            {"--scene", scene},
+            {"SCENE", scene},
+            {"TRACE", traces},
+            {"TRACES", traces},
+            {"INPUTS", trace_or_scene},
+            {"FILE", any_file},
+            {"--sky", {{"auto", "on", "off"}, {}}},
+            {"--lights", {{"auto", "bsdf", "nee", "mis"}, {}}},
+            {"--execution", {{"megakernel", "wavefront"}, {}}},
+            {"--thread-map", {{"tile", "samples", "classes"}, {}}},
+            {"--by", {{"none", "bounce", "ray", "object"}, {}}},
+            {"--format", {{"dinero", "u64", "csv", "accel-sim"}, {}}},
+            {"--level", {{"l1", "l2", "l3"}, {}}},
+            {"--table", {split(samples_table_names()), {}}},
+            {"TOPIC", {{"strategies", "sequences", "gpus", "layouts", "thread-maps", "orders", "scenes"}, {}}},
+            {"--output", any_file},
+            {"--save", any_file},
+            {"--recover", traces},
+            {"--reference", {{}, {"exr"}}},
+            {"--heatmap", {{}, {"exr"}}},
+            {"--picture", {{}, {"png"}}},
+            {"--figure2", {{}, {"png"}}},
+            {"--csv", {{}, {"csv"}}},
+        };
+    }();
+    return table;
+}
+
+struct Options {
+    std::string shell;
+};
+
+void run(const Options& o, const CLI::App& app) {
+    if (o.shell == "bash") return print(bash_completion(app));
+    if (o.shell == "zsh") return print(zsh_completion(app));
+    std::string text;  // for man pages: what there is to describe
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
+        text += fmt::format("{}\t{}\n", command->get_name(), command->get_description());
+    print(text);
+}
+
+}  // namespace
+
+Candidates candidates_of(const CLI::Option& option) {
+    Candidates found;
+    const std::string name = option.nonpositional() && !option.get_lnames().empty() ? "--" + option.get_lnames().front()
+                                                                                    : option.get_name(true);
+    if (const auto at = known().find(name); at != known().end()) found = at->second;
+    if (const auto names = checked_names(option); !names.empty()) found = {names, {}};
+    found.is_list = option.get_delimiter() != '\0';
+    return found;
+}
+
+void add_completion(CLI::App& app) {
+    auto o = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("completion", "Print a script that completes raycache's command lines");
+    command->group("");  // hidden
+    command->add_option("SHELL", o->shell, "bash or zsh; or commands: every subcommand and what it does")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh", "commands"}));
+    command->footer(
+        "Examples:\n"
+        "  source <(raycache completion bash)\n"
+        "  raycache completion zsh > ~/.zfunc/_raycache      # a folder of $fpath");
+    command->callback([o, &app] { run(*o, app); });
+}
+
+}  // namespace raycache::tools
