@@ -43,14 +43,6 @@ std::vector<std::string> split(const std::string& list) {
     return words;
 }
 
-/// The names of a CLI::IsMember check, which says them in its description: "{a,b}".
-std::vector<std::string> checked_names(const CLI::Option& option) {
-    const std::string type = option.get_type_name();
-    const std::size_t open = type.find('{'), close = type.find('}');
-    if (open == std::string::npos || close == std::string::npos || close < open) return {};
-    return split(type.substr(open + 1, close - open - 1));
-}
-
 /// What options and positional arguments of these names take, in every command.
 const std::map<std::string, Candidates>& known() {
     static const std::map<std::string, Candidates> table = [] {
@@ -100,24 +92,20 @@ struct Options {
 };
 
 void run(const Options& o, const CLI::App& app) {
-    if (o.shell == "bash") return print(bash_completion(app));
-    if (o.shell == "zsh") return print(zsh_completion(app));
+    const std::vector<CommandView> commands = views_of_commands(app);
+    if (o.shell == "bash") return print(bash_completion(commands));
+    if (o.shell == "zsh") return print(zsh_completion(commands));
     std::string text;  // for man pages: what there is to describe
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App* a) { return !a->get_group().empty(); }))
-        text += fmt::format("{}\t{}\n", command->get_name(), command->get_description());
+    for (const CommandView& command : commands) text += fmt::format("{}\t{}\n", command.name, command.description);
     print(text);
 }
 
 }  // namespace
 
-Candidates candidates_of(const CLI::Option& option) {
-    Candidates found;
-    const std::string name = option.nonpositional() && !option.get_lnames().empty() ? "--" + option.get_lnames().front()
-                                                                                    : option.get_name(true);
-    if (const auto at = known().find(name); at != known().end()) found = at->second;
-    if (const auto names = checked_names(option); !names.empty()) found = {names, {}};
-    found.is_list = option.get_delimiter() != '\0';
-    return found;
+Candidates candidates_of(const OptionView& option) {
+    if (!option.choices.empty()) return {option.choices, {}};
+    const auto at = known().find(option.names.empty() ? option.title : "--" + option.title);
+    return at == known().end() ? Candidates{} : at->second;
 }
 
 void add_completion(CLI::App& app) {

@@ -4,10 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "tools/command_view.hpp"
 
 namespace raycache::tools {
 
@@ -15,14 +12,13 @@ namespace raycache::tools {
 struct Candidates {
     std::vector<std::string> values;      ///< names; empty if there is no list of them
     std::vector<std::string> extensions;  ///< of files, "toml"; "*": any file; empty if it is no file
-    bool is_list = false;                 ///< several, separated by commas
 };
 
 /// From the option's own check where it has a list of names, else from the lists that the program looks names up in.
-Candidates candidates_of(const CLI::Option&);
+Candidates candidates_of(const OptionView&);
 
-/// Scripts that complete `app`, to be sourced by bash and to lie in the $fpath of zsh.
-std::string bash_completion(const CLI::App& app);
-std::string zsh_completion(const CLI::App& app);
+/// Scripts that complete command lines of these, to be sourced by bash and to lie in the $fpath of zsh.
+std::string bash_completion(const std::vector<CommandView>&);
+std::string zsh_completion(const std::vector<CommandView>&);
 
 }  // namespace raycache::tools

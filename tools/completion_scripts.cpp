@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-
 #include "tools/completion.hpp"
 
 namespace raycache::tools {
@@ -16,43 +14,28 @@ std::string shell_quoted(const std::string& text) {
     return out + "'";
 }
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-}
-
-bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
-
-/// "--output", "-o"; none for a positional argument.
-std::vector<std::string> spellings(const CLI::Option& option) {
-    std::vector<std::string> names;
-    for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-    return names;
-}
-
-std::string bash_values(const Candidates& c) {
+std::string bash_values(const OptionView& option) {
+    const Candidates c = candidates_of(option);
     std::string text;
     if (!c.values.empty()) text += fmt::format(" values={}", shell_quoted(fmt::format("{}", fmt::join(c.values, " "))));
     if (!c.extensions.empty())
         text += fmt::format(" files={}", shell_quoted(fmt::format("{}", fmt::join(c.extensions, " "))));
-    if (c.is_list) text += " list=1";
+    if (option.has_commas) text += " list=1";
     return text;
 }
 
 /// The branch of one subcommand: its options, then what each of them takes, then its positional arguments.
-std::string bash_branch(const CLI::App& command) {
+std::string bash_branch(const CommandView& command) {
     std::vector<std::string> options;
     std::string takes, positional;
-    for (const CLI::Option* option : command.get_options()) {
-        const auto names = spellings(*option);
-        options.insert(options.end(), names.begin(), names.end());
-        const Candidates candidates = candidates_of(*option);
-        if (names.empty())
-            positional += bash_values(candidates);
-        else if (!is_flag(*option))
-            takes += fmt::format("        {}) value=1{} ;;\n", fmt::join(names, " | "), bash_values(candidates));
+    for (const OptionView& option : command.options) {
+        options.insert(options.end(), option.names.begin(), option.names.end());
+        if (option.names.empty())
+            positional += bash_values(option);
+        else if (!option.is_flag)
+            takes += fmt::format("        {}) value=1{} ;;\n", fmt::join(option.names, " | "), bash_values(option));
     }
-    std::string text = fmt::format("    {})\n        options={}\n", command.get_name(),
+    std::string text = fmt::format("    {})\n        options={}\n", command.name,
                                    shell_quoted(fmt::format("{}", fmt::join(options, " "))));
     text += fmt::format("        case $previous in\n{}        *){} ;;\n        esac\n        ;;\n", takes, positional);
     return text;
@@ -68,44 +51,41 @@ std::string zsh_escaped(const std::string& text) {
     return out;
 }
 
-std::string zsh_action(const Candidates& c) {
+std::string zsh_action(const OptionView& option) {
+    const Candidates c = candidates_of(option);
     std::string patterns;
     for (const std::string& extension : c.extensions)
         patterns += fmt::format("{}{}", patterns.empty() ? "" : "|", extension == "*" ? "*" : "*." + extension);
     if (patterns.find('|') != std::string::npos) patterns = "(" + patterns + ")";
     if (c.values.empty()) return patterns.empty() ? " " : fmt::format("_files -g \"{}\"", patterns);
-    return fmt::format("_raycache_values {} \"{}\" {}", c.is_list ? "list" : "one", patterns,
+    return fmt::format("_raycache_values {} \"{}\" {}", option.has_commas ? "list" : "one", patterns,
                        zsh_escaped(fmt::format("{}", fmt::join(c.values, " "))));
 }
 
-std::string zsh_branch(const CLI::App& command) {
-    std::string text = fmt::format("    {})\n        _arguments -s -S", command.get_name());
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string help = zsh_escaped(option->get_description());
-        const bool many = option->get_items_expected_max() > 1 || option->get_delimiter() != '\0';
-        const Candidates candidates = candidates_of(*option);
-        if (spellings(*option).empty())
-            text += fmt::format(" \\\n            {}",
-                                shell_quoted(fmt::format("{}:{}:{}", many ? "*" : "",
-                                                         zsh_escaped(option->get_name(true)), zsh_action(candidates))));
-        for (const std::string& name : spellings(*option)) {
-            const std::string spec = is_flag(*option)
-                                         ? fmt::format("{}[{}]", name, help)
-                                         : fmt::format("*{}{}[{}]:{}:{}", name, name.starts_with("--") ? "=" : "+",
-                                                       help, zsh_escaped(option->get_name()), zsh_action(candidates));
-            text += " \\\n            " + shell_quoted(spec);
-        }
+std::string zsh_branch(const CommandView& command) {
+    std::string text = fmt::format("    {})\n        _arguments -s -S", command.name);
+    const auto add = [&](const std::string& specification) {
+        text += " \\\n            " + shell_quoted(specification);
+    };
+    for (const OptionView& option : command.options) {
+        const std::string help = zsh_escaped(option.help);
+        if (option.names.empty())
+            add(fmt::format("{}:{}:{}", option.is_list ? "*" : "", zsh_escaped(option.title), zsh_action(option)));
+        for (const std::string& name : option.names)
+            add(option.is_flag ? fmt::format("{}[{}]", name, help)
+                               : fmt::format("*{}{}[{}]:{}:{}", name, name.starts_with("--") ? "=" : "+", help,
+                                             zsh_escaped(option.title), zsh_action(option)));
     }
     return text + "\n        ;;\n";
 }
 
 }  // namespace
 
-std::string bash_completion(const CLI::App& app) {
+std::string bash_completion(const std::vector<CommandView>& commands) {
     std::string names, branches;
-    for (const CLI::App* command : commands_of(app)) {
-        names += (names.empty() ? "" : " ") + command->get_name();
-        branches += bash_branch(*command);
+    for (const CommandView& command : commands) {
+        names += (names.empty() ? "" : " ") + command.name;
+        branches += bash_branch(command);
     }
     return "# bash completion for raycache, made by: raycache completion bash\n"
            "_raycache() {\n"
@@ -154,12 +134,11 @@ std::string bash_completion(const CLI::App& app) {
            "complete -F _raycache raycache\n";
 }
 
-std::string zsh_completion(const CLI::App& app) {
+std::string zsh_completion(const std::vector<CommandView>& commands) {
     std::string names, branches;
-    for (const CLI::App* command : commands_of(app)) {
-        names += fmt::format("        {}\n",
-                             shell_quoted(command->get_name() + ":" + zsh_escaped(command->get_description())));
-        branches += zsh_branch(*command);
+    for (const CommandView& command : commands) {
+        names += fmt::format("        {}\n", shell_quoted(command.name + ":" + zsh_escaped(command.description)));
+        branches += zsh_branch(command);
     }
     return "#compdef raycache\n"
            "# zsh completion for raycache, made by: raycache completion zsh\n"

@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string_view>
 
 #include "cachesim/report/json_key.hpp"
+#include "tools/command_view.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -36,13 +36,6 @@ bool is_a_name(const std::string& key) {
     return contains(list, key);
 }
 
-std::string key_of(const CLI::Option& option) {
-    return snake_case(option.get_lnames().empty() ? option.get_name(true) : option.get_lnames().front());
-}
-
-bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
-bool is_list(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
-
 Json value_of(const std::string& text, bool name) {
     if (!name && !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos) {
         Json number = Json::parse(text, nullptr, false);
@@ -52,25 +45,13 @@ Json value_of(const std::string& text, bool name) {
 }
 
 /// Given, else the default; a list for options that take one.
-Json value_of(const CLI::Option& option, const std::string& key) {
-    if (is_flag(option)) return option.count() != 0;
-    std::vector<std::string> words = option.results();
-    const std::string& standard = option.get_default_str();
-    if (words.empty() && !standard.empty()) {
-        if (is_list(option)) {  // "[a,b]"
-            const bool bracketed = standard.front() == '[' && standard.back() == ']';
-            words = CLI::detail::split(bracketed ? standard.substr(1, standard.size() - 2) : standard, ',');
-        } else {
-            words = {standard};
-        }
-    }
+Json value_of(const OptionView& option, const std::string& key) {
+    if (option.is_flag) return option.is_given;
     const bool name = is_a_name(key);
-    if (is_list(option)) {
-        Json list = Json::array();
-        for (const std::string& word : words) list.push_back(value_of(word, name));
-        return list;
-    }
-    return words.empty() ? Json(nullptr) : value_of(words.back(), name);
+    if (!option.is_list) return option.words.empty() ? Json(nullptr) : value_of(option.words.back(), name);
+    Json list = Json::array();
+    for (const std::string& word : option.words) list.push_back(value_of(word, name));
+    return list;
 }
 
 /// As a shell reads it back.
@@ -83,32 +64,27 @@ std::string shell_quoted(const std::string& word) {
 }
 
 template <class Visit>
-void each_option(const CLI::App& command, const Visit& visit) {
-    for (const CLI::Option* option : command.get_options())
-        if (const std::string key = key_of(*option); !is_about_output(key)) visit(*option, key);
+void each_option(const CommandView& command, const Visit& visit) {
+    for (const OptionView& option : command.options)
+        if (const std::string key = snake_case(option.title); !is_about_output(key)) visit(option, key);
 }
 
-std::string command_line(const CLI::App& command) {
+std::string command_line(const CommandView& command) {
     std::string names, options;
-    each_option(command, [&](const CLI::Option& option, const std::string&) {
-        if (option.count() == 0) return;
-        const std::vector<std::string>& words = option.results();
-        const std::string name =
-            option.get_lnames().empty()
-                ? (option.get_snames().empty() ? std::string() : " -" + option.get_snames().front())
-                : " --" + option.get_lnames().front();
-        if (is_flag(option)) {
-            options += name;
-        } else if (name.empty()) {
-            for (const std::string& word : words) names += ' ' + shell_quoted(word);
-        } else if (option.get_delimiter() != '\0') {
-            options +=
-                name + ' ' + shell_quoted(fmt::format("{}", fmt::join(words, std::string(1, option.get_delimiter()))));
+    each_option(command, [&](const OptionView& option, const std::string&) {
+        if (!option.is_given) return;
+        if (option.is_flag) {
+            options += ' ' + option.names.front();
+        } else if (option.names.empty()) {
+            for (const std::string& word : option.words) names += ' ' + shell_quoted(word);
+        } else if (option.has_commas) {
+            options += ' ' + option.names.front() + ' ' + shell_quoted(fmt::format("{}", fmt::join(option.words, ",")));
         } else {
-            for (const std::string& word : words) options += name + ' ' + shell_quoted(word);
+            for (const std::string& word : option.words)
+                options += ' ' + option.names.front() + ' ' + shell_quoted(word);
         }
     });
-    return "raycache " + command.get_name() + names + options;
+    return "raycache " + command.name + names + options;
 }
 
 Json gpu_json(const cachesim::Gpu& gpu) {
@@ -129,24 +105,21 @@ void JsonOption::add(CLI::App& command) {
 }
 
 std::string JsonOption::document(const std::string& report, const JsonSubject& subject) const {
-    Json out{{"schema_version", json_schema_version},
-             {"program", "raycache"},
-             {"version", RAYCACHE_VERSION},
-             {"command", command_->get_name()},
-             {"command_line", command_line(*command_)},
-             {"settings", Json::object()}};
-    each_option(*command_, [&](const CLI::Option& option, const std::string& key) {
+    const CommandView command = view_of(*command_);
+    Json out{{"schema_version", json_schema_version}, {"program", "raycache"},
+             {"version", RAYCACHE_VERSION},           {"command", command.name},
+             {"command_line", command_line(command)}, {"settings", Json::object()}};
+    each_option(command, [&](const OptionView& option, const std::string& key) {
         Json value = value_of(option, key);
         // A positional argument and an option of one name are two ways to say the same.
-        if (!out["settings"].contains(key) || option.count() != 0) out["settings"][key] = std::move(value);
+        if (!out["settings"].contains(key) || option.is_given) out["settings"][key] = std::move(value);
     });
     if (!subject.gpus.empty())
         for (const cachesim::Gpu& gpu : subject.gpus) out["gpus"].push_back(gpu_json(gpu));
     if (!subject.traces.empty()) out["traces"] = subject.traces;
     const Json body = Json::parse(report);
     for (const auto& [key, value] : body.items()) {
-        if (out.contains(key))
-            throw Error(fmt::format("JSON of {}: key \"{}\" stands twice", command_->get_name(), key));
+        if (out.contains(key)) throw Error(fmt::format("JSON of {}: key \"{}\" stands twice", command.name, key));
         out[key] = value;
     }
     return json_text(out);
