@@ -22,6 +22,7 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
 
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe & Ito: for all eyes
+SCHEMA = 1
 LESS, MORE = "#009e73", "#d55e00"
 
 FACTORS = [  # key in the JSON, name, what it says
@@ -312,6 +313,14 @@ def write(path, text):
             raise
 
 
+def read_report(path):
+    """The JSON of the program, of the schema that this reads (docs/json.md)."""
+    report = json.loads(path.read_text("utf-8"))
+    if report.get("schema_version") != SCHEMA:
+        raise BadInput(f"schema_version {report.get('schema_version')}, expected {SCHEMA}: made by another version of raycache")
+    return report
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("comparison", type=pathlib.Path, help="JSON of raycache compare")
@@ -321,13 +330,13 @@ def main():
     arguments = parser.parse_args()
     plt.rcParams.update({"svg.hashsalt": "raycache", "font.size": 9})  # the same input gives the same bytes
     try:
-        comparison = Comparison(json.loads(arguments.comparison.read_text("utf-8")))
+        comparison = Comparison(read_report(arguments.comparison))
         picture = arguments.picture.read_bytes() if arguments.picture else None
         write(arguments.output, page(comparison, picture, arguments.command))
     except OSError as error:
-        sys.exit(f"tools/report.py: error: {error}")
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: error: {error}")
     except (ValueError, KeyError, TypeError, BadInput) as error:
-        sys.exit(f"tools/report.py: error: {arguments.comparison}: not a report of raycache compare --json: {error!r}")
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: error: {arguments.comparison}: not a report of raycache compare --json: {error!r}")
 
 
 if __name__ == "__main__":
