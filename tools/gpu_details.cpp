@@ -31,17 +31,20 @@ std::string shape(const cachesim::CacheGeometry& cache) {
 
 }  // namespace
 
-std::string gpu_details_text() {
+std::string gpu_details_text(std::size_t width) {
     using Align = cachesim::TextTable::Align;
     cachesim::TextTable table;
     table.column("GPU", Align::left);
-    for (const char* title : {"SMs", "warps/SM", "warps/CTA", "L1/SM", "L1 KiB", "sets x ways"})
-        table.column(title, Align::right);
-    table.column("index", Align::left);
-    table.column("policy", Align::left);
-    for (const char* title : {"L2 MiB", "sets x ways"}) table.column(title, Align::right);
-    table.column("index", Align::left);
-    table.column("policy", Align::left);
+    table.column("SMs", Align::right);
+    for (const char* title : {"warps/SM", "warps/CTA"}) table.column(title, Align::right, 1);
+    for (const char* title : {"L1s/SM", "L1 KiB"}) table.column(title, Align::right);
+    table.column("L1 sets x ways", Align::right);
+    table.column("L1 index", Align::left, 2);
+    table.column("L1 policy", Align::left, 3);
+    table.column("L2 MiB", Align::right);
+    table.column("L2 sets x ways", Align::right);
+    table.column("L2 index", Align::left, 2);
+    table.column("L2 policy", Align::left, 3);
     for (const char* title : {"L3 MiB", "line/sector B"}) table.column(title, Align::right);
 
     std::string values;
@@ -56,7 +59,7 @@ std::string gpu_details_text() {
                    gpu.levels.size() > 2 ? fmt::format("{}", static_cast<double>(gpu.levels[2].bytes()) / (1024 * 1024))
                                          : "-",
                    fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
-        values += fmt::format("\n{}: {}\n", gpu.name, gpu.description);
+        values += cachesim::wrapped(fmt::format("\n{}: {}\n", gpu.name, gpu.description), width, 4);
         const auto all = cachesim::gpu_values(preset.name);
         std::size_t keys = 0, widths = 0;
         for (const auto& v : all) {
@@ -64,12 +67,14 @@ std::string gpu_details_text() {
             widths = std::max(widths, v.value.size());
         }
         for (const auto& v : all)
-            values += fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source);
+            values += cachesim::wrapped(fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source),
+                                        width, keys + widths + 6);
     }
-    return table.text() +
-           "\nL1 KiB: of one L1; L1/SM: how many an SM has; sets x ways: of the L1, then of the L2, after its slices "
-           "where "
-           "it has several;\nL2 MiB: of the whole GPU, or where there is an L3 of one core\n" +
+    return table.text(width) + '\n' +
+           cachesim::wrapped(
+               "L1 KiB: of one L1; L1s/SM: how many an SM has; sets x ways: of the L2 after its slices where it has "
+               "several; L2 MiB: of the whole GPU, or where there is an L3 of one core\n",
+               width) +
            values;
 }
 

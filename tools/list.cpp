@@ -11,6 +11,7 @@
 #include "tools/console.hpp"
 #include "tools/gpu_details.hpp"
 #include "tools/json_output.hpp"
+#include "tools/width_option.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
@@ -53,6 +54,7 @@ std::vector<Topic> all_topics() {
 struct Options {
     std::string topic;
     JsonOption json;
+    WidthOption width;
     bool details = false;
 };
 
@@ -61,7 +63,7 @@ void run(const Options& o) {
         if (o.topic != "gpus")
             throw UsageError(
                 fmt::format("--details with topic '{}'; expected 'raycache list gpus --details'", o.topic));
-        print(o.json ? o.json.document(gpu_details_json()) : gpu_details_text());
+        print(o.json ? o.json.document(gpu_details_json()) : gpu_details_text(o.width.columns()));
         return;
     }
     std::vector<Topic> topics = all_topics();
@@ -78,7 +80,8 @@ void run(const Options& o) {
         for (const Entry& e : topic.entries) width = std::max(width, e.name.size());
         text += (text.empty() ? "" : "\n") + topic.name + "\n";
         for (const Entry& e : topic.entries) {
-            text += fmt::format("  {:<{}}  {}\n", e.name, width, e.description);
+            text += cachesim::wrapped(fmt::format("  {:<{}}  {}\n", e.name, width, e.description), o.width.columns(),
+                                      width + 4);
             json["topics"][cachesim::snake_case(topic.name)].push_back(
                 {{"name", e.name}, {"description", e.description}});
         }
@@ -95,6 +98,7 @@ void add_list(CLI::App& app) {
     command->add_option("TOPIC", o->topic,
                         "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all");
     o->json.add(*command);
+    o->width.add(*command);
     command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
     command->footer(
         "Examples:\n  raycache list\n  raycache list gpus --json\n  raycache list gpus --details\n"

@@ -14,17 +14,18 @@ constexpr std::size_t gap = 2;
 /// Names of subjects longer than this become letters where a table is too wide.
 constexpr std::size_t long_name = 20;
 
-/// "L2->L1 B/ray" -> {"L2->L1", "B/ray"}, broken where the longer line is shortest; one line where there is no space.
+/// "L2->L1 B/ray" -> {"L2->L1", "B/ray"}: broken at a space, or behind a slash, where the longer line is shortest; one
+/// line where there is neither.
 std::vector<std::string> two_lines(const std::string& title) {
     std::vector<std::string> best{title};
-    for (std::size_t at = title.find(' '); at != std::string::npos; at = title.find(' ', at + 1)) {
-        std::vector<std::string> lines{title.substr(0, at), title.substr(at + 1)};
-        const auto longest = [](const std::vector<std::string>& l) {
-            std::size_t most = 0;
-            for (const std::string& line : l) most = std::max(most, columns_of(line));
-            return most;
-        };
-        if (longest(lines) < longest(best)) best = std::move(lines);
+    std::size_t least = columns_of(title);
+    for (std::size_t at = 0; at + 1 < title.size(); ++at) {
+        if (title[at] != ' ' && title[at] != '/') continue;
+        const std::string first = title.substr(0, title[at] == '/' ? at + 1 : at), second = title.substr(at + 1);
+        const std::size_t longer = std::max(columns_of(first), columns_of(second));
+        if (longer >= least) continue;
+        least = longer;
+        best = {first, second};
     }
     return best;
 }

@@ -54,7 +54,7 @@ class HelpAndList(ProgramTest):
         listed = self.succeeds("list", "gpus", "--json").json["topics"]["gpus"]
         gpus = self.succeeds("list", "gpus", "--details", "--json").json["gpu_presets"]
         self.assertEqual([gpu["name"] for gpu in gpus], [gpu["name"] for gpu in listed])
-        text = self.succeeds("list", "gpus", "--details").text
+        text = self.succeeds("list", "gpus", "--details", "--wide").text
         for gpu in gpus:
             values = [gpu[key] for key in ("sms", "warps_per_sm", "warps_per_cta", "l1_per_sm")]
             for cache in [gpu[level] for level in ("l1", "l2", "l3") if level in gpu]:
