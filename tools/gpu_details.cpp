@@ -59,7 +59,7 @@ std::string gpu_details_text(std::size_t width) {
                    gpu.levels.size() > 2 ? fmt::format("{}", static_cast<double>(gpu.levels[2].bytes()) / (1024 * 1024))
                                          : "-",
                    fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
-        values += cachesim::wrapped(fmt::format("\n{}: {}\n", gpu.name, gpu.description), width, 4);
+        values += cachesim::break_lines(fmt::format("\n{}: {}\n", gpu.name, gpu.description), width, 4);
         const auto all = cachesim::gpu_values(preset.name);
         std::size_t keys = 0, widths = 0;
         for (const auto& v : all) {
@@ -67,11 +67,12 @@ std::string gpu_details_text(std::size_t width) {
             widths = std::max(widths, v.value.size());
         }
         for (const auto& v : all)
-            values += cachesim::wrapped(fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source),
-                                        width, keys + widths + 6);
+            values +=
+                cachesim::break_lines(fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source),
+                                      width, keys + widths + 6);
     }
     return table.text(width) + '\n' +
-           cachesim::wrapped(
+           cachesim::break_lines(
                "L1 KiB: of one L1; L1s/SM: how many an SM has; sets x ways: of the L2 after its slices where it has "
                "several; L2 MiB: of the whole GPU, or where there is an L3 of one core\n",
                width) +

@@ -80,8 +80,8 @@ void run(const Options& o) {
         for (const Entry& e : topic.entries) width = std::max(width, e.name.size());
         text += (text.empty() ? "" : "\n") + topic.name + "\n";
         for (const Entry& e : topic.entries) {
-            text += cachesim::wrapped(fmt::format("  {:<{}}  {}\n", e.name, width, e.description), o.width.columns(),
-                                      width + 4);
+            text += cachesim::break_lines(fmt::format("  {:<{}}  {}\n", e.name, width, e.description),
+                                          o.width.columns(), width + 4);
             json["topics"][cachesim::snake_case(topic.name)].push_back(
                 {{"name", e.name}, {"description", e.description}});
         }

@@ -36,6 +36,9 @@ std::string letters(std::size_t index) {
     return index < 26 ? text : letters(index / 26 - 1) + text;
 }
 
+/// A row that goes on with the one above: intervals below means.
+bool is_continuation(const std::vector<std::string>& row) { return row.front().empty(); }
+
 std::size_t sum_of(const std::vector<std::size_t>& widths) {
     return std::accumulate(widths.begin(), widths.end(), std::size_t{0}) +
            gap * (widths.empty() ? 0 : widths.size() - 1);
@@ -79,7 +82,7 @@ std::size_t columns_of(std::string_view text) {
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::string wrapped(std::string_view text, std::size_t width, std::size_t indent) {
+std::string break_lines(std::string_view text, std::size_t width, std::size_t indent) {
     if (width == any_width) return std::string(text);
     std::string out;
     std::size_t used = 0;  // of the line so far
@@ -113,7 +116,7 @@ std::string TextTable::lift_shared(std::vector<Column>& columns, Rows& rows) {
     if (rows.empty()) return shared;
     for (std::size_t c = 1; c < columns.size();) {
         const bool same = columns[c].is_subject && std::all_of(rows.begin(), rows.end(), [&](const auto& row) {
-                              return row[c] == rows.front()[c];
+                              return row[c] == rows.front()[c] || is_continuation(row);
                           });
         if (!same) {
             ++c;
@@ -133,14 +136,18 @@ std::string TextTable::shorten_names(std::vector<Column>& columns, Rows& rows) {
         std::vector<std::string> names;
         bool has_long = false;
         for (const auto& row : rows) {
+            if (is_continuation(row)) continue;
             has_long = has_long || columns_of(row[c]) > long_name;
             if (std::find(names.begin(), names.end(), row[c]) == names.end()) names.push_back(row[c]);
         }
         if (!has_long) continue;
+        const auto letter = [&](const std::string& name) {
+            return letters(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+        };
         for (auto& row : rows)
-            row[c] = letters(static_cast<std::size_t>(std::find(names.begin(), names.end(), row[c]) - names.begin()));
+            if (!is_continuation(row)) row[c] = letter(row[c]);
         for (std::size_t i = 0; i < names.size(); ++i)
-            key += wrapped(fmt::format("{} {}: {}", columns[c].title, letters(i), names[i]), text_width, 4) + '\n';
+            key += break_lines(fmt::format("{} {}: {}", columns[c].title, letters(i), names[i]), text_width, 4) + '\n';
     }
     return key;
 }
@@ -157,7 +164,7 @@ std::string TextTable::leave_out(std::vector<Column>& columns, Rows& rows, std::
     }
     if (names.empty()) return {};
     std::reverse(names.begin(), names.end());
-    return wrapped(fmt::format("left out for want of room: {} (--wide)\n", fmt::join(names, ", ")));
+    return break_lines(fmt::format("left out for want of room: {} (--wide)\n", fmt::join(names, ", ")));
 }
 
 std::string TextTable::text(std::size_t width) const {
@@ -174,7 +181,7 @@ std::string TextTable::text(std::size_t width) const {
     const auto titles = titles_of(columns, broken);
     const std::vector<std::size_t> widths = widths_of(titles, rows);
     std::string text =
-        shared.empty() ? "" : wrapped("all rows: " + shared, width == any_width ? any_width : text_width) + "\n\n";
+        shared.empty() ? "" : break_lines("all rows: " + shared, width == any_width ? any_width : text_width) + "\n\n";
     const auto add_line = [&](const auto& cell) {
         std::string line;
         for (std::size_t c = 0; c < columns.size(); ++c) {

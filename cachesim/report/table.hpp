@@ -25,7 +25,8 @@ public:
     /// A column that says what a row is of: GPU, N, sequence. Where all rows are of the same, a line above the table
     /// says it once, unless it is the first column.
     void subject(std::string title, Align align) { columns_.push_back({std::move(title), align, 0, true}); }
-    /// As many cells as columns.
+    /// As many cells as columns. A row whose first cell is empty goes on with the row above: its subjects are empty,
+    /// too.
     void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
     /// What all rows share, title line, rule, rows; every line ends in '\n', none in spaces. Wider than `width`, it is
@@ -52,7 +53,7 @@ private:
 
 /// A paragraph of words with line breaks at spaces, so that no line is wider; a break that is there stays, and lines
 /// after a break of ours begin with `indent` spaces. A word wider than `width` has a line of its own.
-std::string wrapped(std::string_view text, std::size_t width = text_width, std::size_t indent = 0);
+std::string break_lines(std::string_view text, std::size_t width = text_width, std::size_t indent = 0);
 
 /// Columns that UTF-8 text takes on a terminal, each code point as one ("±").
 std::size_t columns_of(std::string_view text);

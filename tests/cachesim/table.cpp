@@ -90,6 +90,21 @@ TEST_CASE("columns of the highest rank go first, and are named") {
     CHECK_FALSE(has(table_of({"h100", "v100"}, 14).text(any_width), "left out"));
 }
 
+TEST_CASE("a row without a name goes on with the row above") {
+    TextTable table;
+    table.column("strategy", Align::left);
+    table.subject("GPU", Align::left);
+    table.column("work", Align::right);
+    table.row({"coherent", "h100", "0.9"});
+    table.row({"", "", "±0.1"});
+    CHECK(table.text() ==
+          "all rows: GPU h100\n\n"
+          "strategy  work\n"
+          "--------  ----\n"
+          "coherent   0.9\n"
+          "          ±0.1\n");
+}
+
 TEST_CASE("columns of rank 0 stay however wide the table") {
     TextTable table;
     for (int i = 0; i < 20; ++i) table.column("title" + std::to_string(i), Align::right);
@@ -98,11 +113,11 @@ TEST_CASE("columns of rank 0 stay however wide the table") {
 }
 
 TEST_CASE("words wrap at spaces, keep the breaks they have, and indent what follows") {
-    CHECK(wrapped("one two three", 7) == "one two\nthree");
-    CHECK(wrapped("one two three", 7, 2) == "one two\n  three");
-    CHECK(wrapped("one\ntwo three\n", 9) == "one\ntwo three\n");
-    CHECK(wrapped("unbreakable", 4) == "unbreakable");
-    CHECK(wrapped("a unbreakable b", 4) == "a\nunbreakable\nb");
-    CHECK(wrapped("  key  ±1 ±2 ±3", 10, 7) == "  key  ±1\n       ±2\n       ±3");
-    CHECK(wrapped("one two three", any_width) == "one two three");
+    CHECK(break_lines("one two three", 7) == "one two\nthree");
+    CHECK(break_lines("one two three", 7, 2) == "one two\n  three");
+    CHECK(break_lines("one\ntwo three\n", 9) == "one\ntwo three\n");
+    CHECK(break_lines("unbreakable", 4) == "unbreakable");
+    CHECK(break_lines("a unbreakable b", 4) == "a\nunbreakable\nb");
+    CHECK(break_lines("  key  ±1 ±2 ±3", 10, 7) == "  key  ±1\n       ±2\n       ±3");
+    CHECK(break_lines("one two three", any_width) == "one two three");
 }
