@@ -42,7 +42,7 @@ class Install(ProgramTest):
     def complete(self, *words):
         """What bash offers for the last of the words."""
         script = self.prefix / "share/bash-completion/completions/raycache"
-        program = f'set -eu; source "{script}"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _raycache; ' \
+        program = f'set -u; source "{script}"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _raycache || true; ' \
                   'printf "%s\\n" "${COMPREPLY[@]+"${COMPREPLY[@]}"}"'
         return self.installed("bash", "--noprofile", "--norc", "-c", program, "bash", "raycache", *words).split()
 
@@ -61,8 +61,9 @@ class Install(ProgramTest):
             text = self.installed("man", "--warnings", "-l", self.prefix / "share/man/man1" / page,
                                   environment={"MANWIDTH": "90", "MANPAGER": "cat"})
             name = page.removesuffix(".1")
-            self.assertRegex(text, rf"NAME\n +{name} - \w")
+            self.assertRegex(text, rf"NAME\n +{name} +- +\w")
             self.assertIn("SEE ALSO", text)
+            self.assertRegex(text, r"EXAMPLES\n( +raycache .*\n)")
             if name != "raycache":
                 command = name.removeprefix("raycache-")
                 self.assertRegex(text, rf"raycache {command} ")
@@ -137,7 +138,7 @@ class Install(ProgramTest):
     def test_the_documents_come_with_their_links(self):
         folder = self.prefix / "share/doc/raycache"
         for page in folder.rglob("*.md"):
-            for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text("utf-8")):
+            for link in re.findall(r"\]\(([^)#:]+\.(?:md|png))(?:#[^)]*)?\)", page.read_text("utf-8")):
                 self.assertTrue((page.parent / link).exists(), f"{page.relative_to(folder)}: {link}")
 
 

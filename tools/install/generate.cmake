@@ -47,13 +47,21 @@ file(MAKE_DIRECTORY "${work}")
 
 # `name`: raycache-compare; `words`: the arguments before --help.
 function(manual name words description also)
-  # help2man runs one program with --help or --version.
-  file(WRITE "${work}/${name}" "#!/bin/sh\n[ \"$1\" = --version ] && words= || words='${words}'\nexec '${program}' $words \"$1\"\n")
+  execute_process(COMMAND ${program} ${words} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+  # help2man would fill the lines of the examples: they go into a section of their own.
+  string(REGEX REPLACE "\nExamples:\n.*$" "\n" text "${help}")
+  string(REGEX MATCH "\nExamples:\n.*$" examples "${help}")
+  string(REGEX REPLACE "^\nExamples:\n" "" examples "${examples}")
+  string(REPLACE "\\" "\\e" examples "${examples}")
+  file(WRITE "${work}/${name}.help" "${text}")
+  file(WRITE "${work}/${name}.more" "[EXAMPLES]\n.nf\n${examples}.fi\n\n[SEE ALSO]\n${also}\n")
+  # help2man runs one program, with --help and with --version.
+  file(WRITE "${work}/${name}"
+       "#!/bin/sh\n[ \"$1\" = --version ] && echo '${name} (raycache) ${version}' || cat '${work}/${name}.help'\n")
   file(CHMOD "${work}/${name}" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
-  file(WRITE "${work}/also" "[SEE ALSO]\n${also}\n")
   # Its date is that of the sources where a packager says so (SOURCE_DATE_EPOCH), else today's.
   execute_process(COMMAND ${help2man} --no-info --section 1 --manual "User Commands" --name "${description}"
-                          --source "raycache ${version}" --include "${work}/also" --output "${manuals}/${name}.1"
+                          --source "raycache ${version}" --include "${work}/${name}.more" --output "${manuals}/${name}.1"
                           "${work}/${name}" RESULT_VARIABLE failed ERROR_VARIABLE words_of_help2man)
   if(failed)
     message(WARNING "no manual ${name}.1: ${words_of_help2man}")
