@@ -51,6 +51,7 @@ std::string zsh_escaped(const std::string& text) {
     return out;
 }
 
+/// A blank before the function: without it _arguments puts options of its own before the arguments.
 std::string zsh_action(const OptionView& option) {
     const Candidates c = candidates_of(option);
     std::string patterns;
@@ -58,7 +59,7 @@ std::string zsh_action(const OptionView& option) {
         patterns += fmt::format("{}{}", patterns.empty() ? "" : "|", extension == "*" ? "*" : "*." + extension);
     if (patterns.find('|') != std::string::npos) patterns = "(" + patterns + ")";
     if (c.values.empty()) return patterns.empty() ? " " : fmt::format("_files -g \"{}\"", patterns);
-    return fmt::format("_raycache_values {} \"{}\" {}", option.has_commas ? "list" : "one", patterns,
+    return fmt::format(" _raycache_values {} \"{}\" {}", option.has_commas ? "list" : "one", patterns,
                        zsh_escaped(fmt::format("{}", fmt::join(c.values, " "))));
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cachesim/report/table.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/json_output.hpp"
@@ -51,7 +52,9 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
     const traces::Provenance& p = h.provenance;
     std::string out;
     const auto line = [&](const char* name, const std::string& value) {
-        if (!value.empty()) out += fmt::format("{:<18}{}\n", name, value);
+        constexpr std::size_t title = 18;
+        if (!value.empty())
+            out += cachesim::break_lines(fmt::format("{:<{}}{}\n", name, title, value), cachesim::text_width, title);
     };
     const auto count = [&](const char* name, std::uint64_t value) { line(name, fmt::format("{}", value)); };
     line("program", p.program);

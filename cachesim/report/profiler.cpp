@@ -82,25 +82,25 @@ std::string to_text(const ProfilerReport& profile) {
     const Report& report = profile.report;
     std::string text;
     for (const Row& row : report.rows) {
+        text += break_lines(fmt::format("{}, {}, N {}, {}{}\n", row.scene, row.strategy, row.spp, row.gpu,
+                                        report.by == GroupBy::none ? "" : ", " + row.group),
+                            text_width, 2);
         TextTable table;
-        table.column(fmt::format("{}, {}, N {}, {}{}", row.scene, row.strategy, row.spp, row.gpu,
-                                 report.by == GroupBy::none ? "" : ", " + row.group),
-                     TextTable::Align::left);
+        table.column("metric", TextTable::Align::left);
         table.column("value", TextTable::Align::right);
         for (const Metric& metric : metrics_of(report)) table.row({metric.name, to_string(metric.value(row), 2, "-")});
         text += table.text() + '\n';
     }
-    text +=
+    std::string legend =
         "Sums over all sample indices, of the simulated accesses alone. l1tex counts every load instruction: a visit "
-        "to an object\nis several, and their requests for a sector that an earlier one fetched hit. "
+        "to an object is several, and their requests for a sector that an earlier one fetched hit. "
         "thread_inst_executed: active lanes per access.\n";
     if (report.has_wavefront())
-        text +=
+        legend +=
             "Stores: L2 gets each distinct sector of an access once, not of each store instruction. dram__bytes also "
-            "holds what\nsorting rays moves, which the trace does not split into reads and writes; no other name "
-            "counts "
+            "holds what sorting rays moves, which the trace does not split into reads and writes; no other name counts "
             "it.\n";
-    return text;
+    return text + break_lines(legend);
 }
 
 std::string to_json(const ProfilerReport& profile) {
