@@ -61,15 +61,19 @@ std::string gpu_details_text(std::size_t width) {
                    fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
         values += cachesim::break_lines(fmt::format("\n{}: {}\n", gpu.name, gpu.description), width, 4);
         const auto all = cachesim::gpu_values(preset.name);
+        constexpr std::size_t widest_value = 24;  // a longer one has lines of its own
         std::size_t keys = 0, widths = 0;
         for (const auto& v : all) {
             keys = std::max(keys, v.key.size());
-            widths = std::max(widths, v.value.size());
+            if (v.value.size() <= widest_value) widths = std::max(widths, v.value.size());
         }
-        for (const auto& v : all)
-            values +=
-                cachesim::break_lines(fmt::format("  {:<{}}  {:>{}}  {}\n", v.key, keys, v.value, widths, v.source),
-                                      width, keys + widths + 6);
+        const std::size_t sources = keys + widths + 6;
+        for (const auto& v : all) {
+            const std::string value = v.value.size() <= widest_value ? fmt::format("{:>{}}  ", v.value, widths)
+                                                                     : fmt::format("{}\n{:{}}", v.value, "", sources);
+            values += cachesim::break_lines(fmt::format("  {:<{}}  {}{}\n", v.key, keys, value, v.source), width,
+                                            v.value.size() <= widest_value ? sources : keys + 4);
+        }
     }
     return table.text(width) + '\n' +
            cachesim::break_lines(
