@@ -16,7 +16,7 @@ COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain
 
 
 @unittest.skipUnless((BUILD / "cmake_install.cmake").exists() and shutil.which("cmake"),
-                     "no build folder beside the program, or no cmake")
+                     "the build folder of the program, or cmake; tools/build makes one")
 class Install(ProgramTest):
     @classmethod
     def setUpClass(cls):
@@ -54,7 +54,7 @@ class Install(ProgramTest):
     def test_manuals_of_the_program_and_of_every_subcommand_render(self):
         if not shutil.which("help2man") or not shutil.which("man"):
             self.assertIn("help2man is missing", self.words)
-            self.skipTest("no help2man or no man: apt-get install help2man man-db")
+            self.skipTest("help2man or man; apt-get install help2man man-db")
         pages = sorted(page.name for page in (self.prefix / "share/man/man1").iterdir())
         self.assertEqual(pages, sorted(["raycache.1", *(f"raycache-{name}.1" for name in COMMANDS)]))
         for page in pages:
@@ -111,7 +111,7 @@ class Install(ProgramTest):
         self.assertIn(result.code, (1, 2), command)
         return result.stderr.splitlines()[-1]
 
-    @unittest.skipUnless(shutil.which("zsh"), "no zsh: apt-get install zsh")
+    @unittest.skipUnless(shutil.which("zsh"), "zsh; apt-get install zsh")
     def test_the_completion_of_zsh_loads(self):
         script = self.prefix / "share/zsh/site-functions/_raycache"
         self.installed("zsh", "-f", "-n", script)
