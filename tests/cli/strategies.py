@@ -72,16 +72,8 @@ class Strategies(ProgramTest):
         self.assertTrue(self.path("a.exr").exists())
 
     def test_the_command_of_a_trace_makes_the_same_trace_again(self):
-        command = None
-        def find(value):
-            nonlocal command
-            if isinstance(value, dict):
-                for inner in value.values():
-                    find(inner)
-            elif isinstance(value, str) and value.startswith("raycache capture "):
-                command = value
-        find(self.recorded("--strategy", "interleaved", "--interleave", "3", "--seed", "7"))
-        self.assertIsNotNone(command)
+        recorded = self.recorded("--strategy", "interleaved", "--interleave", "3", "--seed", "7")
+        command = recorded["traces"][0]["command_line"]
         self.succeeds(*command.split()[1:], "-o", "again.rct")
         self.assertEqual(self.path("again.rct").read_bytes(), self.path("trace.rct").read_bytes())
 
