@@ -107,7 +107,8 @@ Explained explain(const ExplainRequest& request) {
         traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
-    if (gpu.timing && request.timed) {
+    if (gpu.timing && request.timed) explanation.no_time = cachesim::no_time_note(gpu);
+    if (gpu.timing && request.timed && explanation.no_time.empty()) {
         const std::vector<double> none(first.launches.size());
         for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
             explanation.speed_ups.push_back({ideal, {}, {}, none, none});

@@ -93,6 +93,10 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
 }
 
 void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows) {
+    if (!cachesim::no_time_note(gpu).empty()) {
+        for (QualityRow& row : rows) row.timing = {std::nan(""), std::nullopt};
+        return;
+    }
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const QualityRow& row : rows) captures.push_back(std::make_unique<tracer::Capture>(scene, row.settings));
     const auto series = replay_timed(sources_of(captures), {gpu});
@@ -175,7 +179,8 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
     render_cases(scene, reference, request, rows);
     if (request.gpu) {
         predict_times(scene, *request.gpu, rows);
-        if (request.equal_time) render_at_equal_time(scene, reference, request, rows);
+        if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())
+            render_at_equal_time(scene, reference, request, rows);
     }
     return rows;
 }

@@ -43,7 +43,7 @@ struct QualityRow {
     std::vector<PairEffect> pairs;        ///< by pair; empty unless asked for
 
     struct Timing {
-        double seconds = 0;                          ///< predicted for all N samples
+        double seconds = 0;                          ///< predicted for all N samples; NaN: no_time_note()
         std::optional<cachesim::Estimate> speed_up;  ///< over the baseline at equal N; absent without one
     };
     std::optional<Timing> timing;

@@ -80,6 +80,9 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     result.rows = measure_quality(*prepared, reference, request);
     result.reference = std::move(reference.mean);
     add_notes(result);
+    if (request.gpu)
+        if (std::string note = cachesim::no_time_note(*request.gpu); !note.empty())
+            result.notes.push_back(std::move(note));
     return result;
 }
 

@@ -89,7 +89,7 @@ void draw_error(Canvas& canvas, unsigned x, unsigned y, const Image& image, cons
 }
 
 std::string speed_text(const QualityRow& row) {
-    if (!row.timing) return {};
+    if (!row.timing || !std::isfinite(row.timing->seconds)) return {};
     return row.timing->speed_up ? fmt::format(", predicted speed {:.2f} x", row.timing->speed_up->mean)
                                 : std::string(", predicted speed 1 x");
 }

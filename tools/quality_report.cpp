@@ -84,7 +84,7 @@ std::string to_text(const QualityReport& report) {
             cells.push_back(
                 row.timing->speed_up
                     ? with_error(row.timing->speed_up->mean, row.timing->speed_up->half_width.value_or(std::nan("")), 3)
-                    : (row.baseline ? "1" : "-"));
+                    : (row.baseline && std::isfinite(row.timing->seconds) ? "1" : "-"));
         if (equal_time)
             cells.insert(cells.end(),
                          {fmt::format("{}", row.equal_time->spp), digits(row.equal_time->errors.rmse.value)});

@@ -31,6 +31,7 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
             made.gpu = gpu.name;
             made.sector_bytes = gpu.l1().sector_bytes;
             if constexpr (requires { made.levels; }) made.levels = gpu.levels.size();
+            if constexpr (requires { made.no_time; }) made.no_time = cachesim::no_time_note(gpu);
             made.spp = p.spp;
             made.launches.resize(header.launches.size());
         }

@@ -29,13 +29,14 @@ double ratio_of(const QualityRow& row, const std::vector<QualityRow>& rows) {
 
 std::string speed_text(const QualityRow& row) {
     const auto& up = row.timing->speed_up;
-    if (!up) return "-";
-    return fmt::format("{:.3f}{}", up->mean, up->half_width ? fmt::format(" ±{:.3f}", *up->half_width) : "");
+    if (!up) return "not predicted";
+    return fmt::format("predicted {:.3f}{} x", up->mean,
+                       up->half_width ? fmt::format(" ±{:.3f}", *up->half_width) : "");
 }
 
 std::string describe(const QualityRow& row, const std::vector<QualityRow>& rows) {
     const double mu = *row.strategy().parameters.mu;
-    return fmt::format("mu {:.4g} (K {:.3g}): predicted speed {} x, R8 {:.2f}, RMSE {:.3f} x", mu,
+    return fmt::format("mu {:.4g} (K {:.3g}): speed {}, R8 {:.2f}, RMSE {:.3f} x", mu,
                        mu * std::sqrt(static_cast<double>(row.spp())), speed_text(row), row.errors.r8.value,
                        ratio_of(row, rows));
 }

@@ -66,6 +66,13 @@ Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& ch
     return parse_gpu(text.toml, text.file, changes);
 }
 
+std::string no_time_note(const Gpu& gpu) {
+    if (!gpu.timing || gpu.timing->not_predicted.empty()) return {};
+    const char* const kind = gpu.levels.size() == 3 ? "CPU time" : "time";
+    return fmt::format("{}: not predicted for {} ({}; see cachesim/MODEL.md)", kind, gpu.name,
+                       gpu.timing->not_predicted);
+}
+
 std::vector<GpuValue> gpu_values(const std::string& name_or_path) {
     const GpuText text = find_text(name_or_path);
     return parse_gpu_values(text.toml, text.file);

@@ -102,6 +102,10 @@ struct Gpu {
 /// or missing keys, wrong types, impossible geometry. The changes stand in the GPU's name.
 Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes = {});
 
+/// "CPU time: not predicted for xeon-8380 (…; see cachesim/MODEL.md)" where Timing::not_predicted says why; else empty.
+/// Reports print it in place of times and what is computed from them, and leave those out: null in JSON, empty in CSV.
+std::string no_time_note(const Gpu&);
+
 /// Whether load_gpu() takes it for the path of a file.
 bool is_gpu_file(const std::string& name_or_path);
 

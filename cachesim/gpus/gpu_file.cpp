@@ -20,12 +20,14 @@ constexpr const char* cache_keys[] = {
     "sets",     "ways",           "line_bytes", "sector_bytes",     "index",      "index_masks",     "policy",
     "seed",     "slices",         "slice_hash", "interleave_bytes", "slice_bits", "slice_hash_from", "fill_bytes",
     "allocate", "carve_out_bytes"};
-constexpr const char* timing_keys[] = {"clock_mhz",
+constexpr const char* timing_keys[] = {"not_predicted",
+                                       "clock_mhz",
                                        "launch_cycles",
                                        "schedulers",
                                        "node_instructions",
                                        "triangle_instructions",
                                        "texel_instructions",
+                                       "leaf_instructions",
                                        "shading_instructions",
                                        "instruction_latency",
                                        "instruction_interval",
@@ -38,6 +40,7 @@ constexpr const char* timing_keys[] = {"clock_mhz",
                                        "l1_banks",
                                        "tags_per_cycle",
                                        "l1_bytes_per_cycle",
+                                       "empty_request_cycles",
                                        "l1_latency",
                                        "l2_latency",
                                        "l2_far_latency",
@@ -119,12 +122,14 @@ FrontEnd read_front_end(TomlReader::Section section) {
 
 Timing read_timing(TomlReader::Section section) {
     Timing t;
+    t.not_predicted = section.text_or_none("not_predicted");
     t.clock_mhz = section.positive("clock_mhz");
     t.launch_cycles = section.number_or("launch_cycles", t.launch_cycles, true);
     t.schedulers = section.number<std::uint32_t>("schedulers");
     t.node_instructions = section.number<std::uint32_t>("node_instructions", true);
     t.triangle_instructions = section.number<std::uint32_t>("triangle_instructions", true);
     t.texel_instructions = section.number<std::uint32_t>("texel_instructions", true);
+    t.leaf_instructions = section.number_or("leaf_instructions", t.leaf_instructions, true);
     t.shading_instructions = section.number_or("shading_instructions", t.shading_instructions, true);
     t.instruction_latency = section.number<std::uint32_t>("instruction_latency", true);
     t.instruction_interval = section.number_or("instruction_interval", t.instruction_interval);
@@ -137,6 +142,7 @@ Timing read_timing(TomlReader::Section section) {
     t.l1_banks = section.number_or("l1_banks", t.l1_banks);
     t.tags_per_cycle = section.number_or("tags_per_cycle", t.tags_per_cycle);
     t.l1_bytes_per_cycle = section.positive_or("l1_bytes_per_cycle", t.l1_bytes_per_cycle);
+    t.empty_request_cycles = section.number_or("empty_request_cycles", t.empty_request_cycles, true);
     t.l1_latency = section.number<std::uint32_t>("l1_latency", true);
     t.l2_latency = section.number<std::uint32_t>("l2_latency", true);
     t.l2_far_latency = section.number_or("l2_far_latency", t.l2_latency, true);

@@ -181,6 +181,7 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
     if (auto p = not_a_power_of_two("timing.l1_banks", t.l1_banks)) return p;
     if (auto p = not_in("timing.l1_banks", t.l1_banks, 1, 32)) return p;
     if (auto p = not_in("timing.tags_per_cycle", t.tags_per_cycle, 1, 64)) return p;
+    if (auto p = not_in("timing.empty_request_cycles", t.empty_request_cycles, 0, 1000)) return p;
     for (const auto& [key, cycles] :
          {std::pair{"timing.launch_cycles", t.launch_cycles}, std::pair{"timing.l1_latency", t.l1_latency},
           std::pair{"timing.l2_latency", t.l2_latency}, std::pair{"timing.l2_far_latency", t.l2_far_latency},
@@ -189,6 +190,7 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
           std::pair{"timing.node_instructions", t.node_instructions},
           std::pair{"timing.triangle_instructions", t.triangle_instructions},
           std::pair{"timing.texel_instructions", t.texel_instructions},
+          std::pair{"timing.leaf_instructions", t.leaf_instructions},
           std::pair{"timing.shading_instructions", t.shading_instructions}})
         if (auto p = not_in(key, cycles, 0, 100'000)) return p;
     const bool three = gpu.levels.size() == 3;

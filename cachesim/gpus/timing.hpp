@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace raycache::cachesim {
@@ -33,6 +34,8 @@ struct LevelTiming {
 };
 
 struct Timing {
+    /// Why the times that come out are not to be published; empty: they are. See no_time_note() in gpu.hpp.
+    std::string not_predicted;
     double clock_mhz = 0;
     std::uint32_t launch_cycles = 0;  ///< from the launch to the first instruction
     std::uint32_t schedulers = 4;     ///< of an SM, each of one instruction a cycle; warp slot mod schedulers
@@ -40,6 +43,7 @@ struct Timing {
     /// Instructions between the loads of a visit and the next access, by kind of object, and the cycles from one to the
     /// next that depends on it.
     std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
+    std::uint32_t leaf_instructions = 0;     ///< more, of a visit where lanes begin a leaf (timed/leaf_starts.hpp)
     std::uint32_t shading_instructions = 0;  ///< before lanes of a warp begin a ray: shading of the hit, set-up
     std::uint32_t instruction_latency = 4;
     std::uint32_t instruction_interval = 1;  ///< cycles from one of them to the next of the same scheduler
@@ -58,6 +62,9 @@ struct Timing {
     std::uint32_t l1_banks = 4;
     std::uint32_t tags_per_cycle = 4;
     double l1_bytes_per_cycle = 128;
+    /// Where the lanes of a load go in several groups (FrontEnd::lanes_per_request_*): what one without an active lane
+    /// takes of the port.
+    std::uint32_t empty_request_cycles = 0;
     std::uint32_t l1_latency = 0, l2_latency = 0, l2_far_latency = 0;  ///< cycles
     std::uint32_t dram_latency = 0;                                    ///< on average over all partitions
     std::uint32_t l2_partitions = 1;  ///< an SM reaches its own after l2_latency, the others after l2_far_latency

@@ -127,6 +127,16 @@ public:
             return one_line(string->get());
         }
 
+        /// A text that may be empty, or be left out, which is the same.
+        std::string text_or_none(const std::string& key) {
+            if (!has(key)) return {};
+            const toml::node& node = reader_->value(*table_, prefix_, key);
+            const auto string = node.as_string();
+            if (!string)
+                reader_->fail(line_of(node), prefix_ + key, fmt::format("expected a text, found {}", type_name(node)));
+            return reader_->values_.back().value = one_line(string->get());
+        }
+
         template <class Enum, std::size_t n>
         Enum choice(const std::string& key, const Choice<Enum> (&choices)[n]) {
             const std::string found = text(key);

@@ -28,8 +28,10 @@ struct Explanation {
     std::uint32_t sector_bytes = 32;
     GroupBy by = GroupBy::none;  ///< how the identity is cut; not by object
     ExplainedTrace base, other;  ///< of the same sample indices
-    /// The timed replays of idealised_replays(); empty if the GPU has no [timing].
+    /// The timed replays of idealised_replays(); empty if the GPU has no [timing], or no time is predicted for it: then
+    /// `no_time` says why (no_time_note()).
     std::vector<SpeedUp> speed_ups;
+    std::string no_time;
 
     std::size_t levels() const { return base.findings.levels.size(); }  ///< of the GPU's caches
 };

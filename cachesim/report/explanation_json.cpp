@@ -95,6 +95,7 @@ std::string to_json(const Explanation& e) {
     json["groups"] = groups(e);
     json["base"] = trace(e.base);
     json["other"] = trace(e.other);
+    if (!e.no_time.empty()) json["timed"] = nullptr;
     for (const SpeedUp& s : e.speed_ups)
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},
@@ -102,6 +103,7 @@ std::string to_json(const Explanation& e) {
                                  {"speed_up", json_of(s.value())}});
     json["sentence"] = sentence(e);
     if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
+    if (!e.no_time.empty()) json["time_sentence"] = e.no_time + '.';
     return dump(json);
 }
 

@@ -243,6 +243,7 @@ std::string to_text(const Explanation& e) {
             "(gain: how much faster than as modelled)\n\n" +
             to_text(e.speed_ups, e.base.name, e.other.name);
     text += '\n' + wrapped(sentence(e));
+    if (!e.no_time.empty()) return text + wrapped(e.no_time + '.');
     return e.speed_ups.empty() ? text : text + wrapped(sentence(e.speed_ups));
 }
 

@@ -32,17 +32,25 @@ inline double utilisation(const TimedStatistics& t, TimedStatistics::Resource r)
     return ratio(r.busy, static_cast<double>(r.copies) * static_cast<double>(t.cycles));
 }
 
+/// What depends on time: not a number where the row has none.
+inline double in_time(const TimedRow& row, double value) { return row.has_time() ? value : std::nan(""); }
+inline double utilisation(const TimedRow& row, const Named& r) {
+    return in_time(row, utilisation(row.totals, row.totals.*r.resource));
+}
+inline double occupancy(const TimedRow& row) { return in_time(row, row.totals.occupancy()); }
+
 inline double hit_rate(const LevelAnswers& a, bool merges_hit) {
     return ratio(static_cast<double>(a.hits + (merges_hit ? a.merges : 0)), static_cast<double>(a.requests()));
 }
 
 inline double gigabytes_per_second(const TimedRow& row, std::uint64_t sectors) {
-    return ratio(static_cast<double>(sectors) * row.series.sector_bytes / 1e9, row.totals.seconds);
+    return in_time(row, ratio(static_cast<double>(sectors) * row.series.sector_bytes / 1e9, row.totals.seconds));
 }
 inline double l2_gb_s(const TimedRow& row) { return gigabytes_per_second(row, shared_level(row.totals).requests()); }
 inline double dram_gb_s(const TimedRow& row) { return gigabytes_per_second(row, row.totals.dram_sectors); }
-inline double visit_latency(const TimedStatistics& t) {
-    return ratio(static_cast<double>(t.visit_cycles), static_cast<double>(t.warp_accesses));
+inline double visit_latency(const TimedRow& row) {
+    return in_time(row,
+                   ratio(static_cast<double>(row.totals.visit_cycles), static_cast<double>(row.totals.warp_accesses)));
 }
 
 inline std::vector<std::uint32_t> samples(const TimedSeries& s) {

@@ -24,6 +24,11 @@ Json answers_of(const LevelAnswers& a) {
             {"hit_rate_merges_miss", json_of(hit_rate(a, false))}};
 }
 
+Json text_in_time(const TimedRow& row, const std::string& text) { return row.has_time() ? Json(text) : Json(nullptr); }
+
+/// Empty where there is no value.
+std::string field(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
 }  // namespace
 
 std::string to_json(const TimedReport& report) {
@@ -38,9 +43,9 @@ std::string to_json(const TimedReport& report) {
                  {"gpu", row.series.gpu},
                  {"spp", row.series.spp},
                  {"samples", samples(row.series)},
-                 {"cycles", t.cycles},
-                 {"seconds", json_of(t.seconds)},
-                 {"cycles_per_ray", json_of(std::optional(row.cycles_per_ray))},
+                 {"cycles", row.has_time() ? Json(t.cycles) : Json(nullptr)},
+                 {"seconds", json_of(in_time(row, t.seconds))},
+                 {"cycles_per_ray", row.has_time() ? json_of(row.cycles_per_ray) : Json(nullptr)},
                  {"speed_up", json_of(row.speed_up)},
                  {"rays", t.rays},
                  {"warp_accesses", t.warp_accesses},
@@ -51,16 +56,16 @@ std::string to_json(const TimedReport& report) {
                  {"l2", answers_of(t.l2)}};
         if (t.l3.requests()) out["l3"] = answers_of(t.l3);
         out["dram_sectors"] = t.dram_sectors;
-        out["bottleneck"] = row.waits_most() ? "latency" : row.busiest;
-        out["busiest"] = row.busiest;
-        out["occupancy"] = json_of(t.occupancy());
+        out["bottleneck"] = text_in_time(row, row.waits_most() ? "latency" : row.busiest);
+        out["busiest"] = text_in_time(row, row.busiest);
+        out["occupancy"] = json_of(occupancy(row));
         for (const auto& list : {std::span<const Named>(resources), std::span<const Named>(parts)})
-            for (const Named& r : list) out["utilisation"][snake_case(r.name)] = json_of(utilisation(t, t.*r.resource));
+            for (const Named& r : list) out["utilisation"][snake_case(r.name)] = json_of(utilisation(row, r));
         out["l2_gb_s"] = json_of(l2_gb_s(row));
         out["l2_peak_gb_s"] = json_of(t.peak_l2_gb_s);
         out["dram_gb_s"] = json_of(dram_gb_s(row));
         out["dram_peak_gb_s"] = json_of(t.peak_dram_gb_s);
-        out["visit_latency"] = json_of(visit_latency(t));
+        out["visit_latency"] = json_of(visit_latency(row));
         rows.push_back(std::move(out));
     }
     return dump({{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}});
@@ -78,18 +83,20 @@ std::string to_csv(const TimedReport& report) {
         const TimedSeries& s = row.series;
         for (const std::string* name : {&s.scene, &s.strategy, &s.sequence, &s.thread_map, &s.gpu})
             text += csv_field(*name) + ',';
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{}", s.spp, t.cycles, t.seconds, row.cycles_per_ray.mean,
-                            row.speed_up ? fmt::format("{}", row.speed_up->mean) : "", t.rays, t.warp_accesses,
-                            t.lane_accesses, t.instructions, t.loads);
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{}", s.spp, row.has_time() ? fmt::format("{}", t.cycles) : "",
+                            field(in_time(row, t.seconds)), field(in_time(row, row.cycles_per_ray.mean)),
+                            row.speed_up ? field(row.speed_up->mean) : "", t.rays, t.warp_accesses, t.lane_accesses,
+                            t.instructions, t.loads);
         for (const LevelAnswers* a : {&t.l1, &t.l2, &t.l3})
             text += fmt::format(",{},{},{},{}", a->hits, a->merges, a->line_misses, a->sector_misses);
         text += fmt::format(",{}", t.dram_sectors);
-        for (const Named& r : resources) text += fmt::format(",{}", utilisation(t, t.*r.resource));
-        for (const Named& r : parts) text += fmt::format(",{}", utilisation(t, t.*r.resource));
+        for (const Named& r : resources) text += ',' + field(utilisation(row, r));
+        for (const Named& r : parts) text += ',' + field(utilisation(row, r));
         for (const double value :
-             {t.occupancy(), l2_gb_s(row), t.peak_l2_gb_s, dram_gb_s(row), t.peak_dram_gb_s, visit_latency(t)})
-            text += fmt::format(",{}", value);
-        text += fmt::format(",{},{}\n", row.waits_most() ? "latency" : row.busiest, row.busiest);
+             {occupancy(row), l2_gb_s(row), t.peak_l2_gb_s, dram_gb_s(row), t.peak_dram_gb_s, visit_latency(row)})
+            text += ',' + field(value);
+        text +=
+            row.has_time() ? fmt::format(",{},{}\n", row.waits_most() ? "latency" : row.busiest, row.busiest) : ",,\n";
     }
     return text;
 }

@@ -56,8 +56,17 @@ std::string with_interval(const std::optional<Estimate>& e, int digits) {
 
 /// "DRAM (81.2 %)", "latency; busiest: L1 port (31.0 %)".
 std::string bottleneck(const TimedRow& row) {
+    if (!row.has_time()) return "-";
     return fmt::format("{}{} ({} %)", row.waits_most() ? "latency; busiest: " : "", row.busiest,
                        percent(row.busiest_share));
+}
+
+/// One for each GPU whose time is not predicted.
+void note_missing_times(TimedReport& report) {
+    for (const TimedRow& row : report.rows)
+        if (!row.has_time() &&
+            std::find(report.notes.begin(), report.notes.end(), row.series.no_time) == report.notes.end())
+            report.notes.push_back(row.series.no_time);
 }
 
 /// A note if warps take so few of their slots that cycles say nothing of throughput.
@@ -65,7 +74,7 @@ void note_occupancy(TimedReport& report) {
     constexpr double few = 0.5;
     std::vector<std::string> names;
     for (const TimedRow& row : report.rows)
-        if (row.totals.occupancy() < few && row.totals.warps)
+        if (row.has_time() && row.totals.occupancy() < few && row.totals.warps)
             names.push_back(fmt::format("{}, N {}, {}", row.series.strategy, row.series.spp, row.series.gpu));
     if (names.empty()) return;
     const bool all = names.size() == report.rows.size();
@@ -107,7 +116,7 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
         };
         auto base = find_base(true);
         if (base == all.end()) base = find_base(false);
-        if (base != all.end() && series.strategy != baseline) {
+        if (row.has_time() && base != all.end() && series.strategy != baseline) {
             if (samples(*base) == samples(series)) {
                 row.speed_up = ratio_to_baseline(cycles(*base), cycles(series));
             } else {
@@ -120,6 +129,7 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
         report.rows.push_back(std::move(row));
     }
     note_occupancy(report);
+    note_missing_times(report);
     return report;
 }
 
@@ -158,9 +168,11 @@ std::string to_text(const TimedReport& report) {
             cells.insert(cells.begin(), identity.begin(), identity.end());
             table.row(cells);
         };
-        add(times, {fmt::format("{}", t.cycles), decimals(1e3 * t.seconds, 3), with_interval(row.cycles_per_ray, 2),
-                    row.series.strategy == report.baseline ? "1" : with_interval(row.speed_up, 3),
-                    percent(t.occupancy()), bottleneck(row)});
+        const bool time = row.has_time();
+        add(times, {time ? fmt::format("{}", t.cycles) : "-", decimals(in_time(row, 1e3 * t.seconds), 3),
+                    time ? with_interval(row.cycles_per_ray, 2) : "-",
+                    time && row.series.strategy == report.baseline ? "1" : with_interval(row.speed_up, 3),
+                    percent(occupancy(row)), bottleneck(row)});
         std::vector<std::string> cells;
         for (const LevelAnswers* level : {&t.l1, &t.l2, &t.l3}) {
             if (!three && level == &t.l3) break;
@@ -170,11 +182,11 @@ std::string to_text(const TimedReport& report) {
         cells.push_back(fmt::format("{}", t.dram_sectors));
         add(hits, cells);
         cells.clear();
-        for (const Named& r : resources) cells.push_back(percent(utilisation(t, t.*r.resource)));
-        for (const Named& r : parts) cells.push_back(percent(utilisation(t, t.*r.resource)));
+        for (const Named& r : resources) cells.push_back(percent(utilisation(row, r)));
+        for (const Named& r : parts) cells.push_back(percent(utilisation(row, r)));
         add(use, cells);
         add(rates, {decimals(l2_gb_s(row), 1), decimals(t.peak_l2_gb_s, 0), decimals(dram_gb_s(row), 1),
-                    decimals(t.peak_dram_gb_s, 0), decimals(visit_latency(t), 0)});
+                    decimals(t.peak_dram_gb_s, 0), decimals(visit_latency(row), 0)});
     }
     std::string text = one_gpu ? "GPU: " + report.rows.front().series.gpu + "\n\n" : "";
     text += times.text() + "\n" + hits.text() + "\n" + use.text() + "\n" + rates.text() + "\n";

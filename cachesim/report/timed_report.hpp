@@ -16,6 +16,7 @@ struct TimedSeries {
     std::string scene, strategy, sequence, parameters, thread_map, gpu;
     std::uint64_t spp = 0;
     std::uint32_t sector_bytes = 32;
+    std::string no_time;  ///< no_time_note() of the GPU: only the counts of the launches are to be shown
     std::vector<TimedStatistics> launches;  ///< one per sample index, ascending
 };
 
@@ -26,6 +27,8 @@ struct TimedRow {
     double busiest_share = 0;  ///< of its time
     /// Nothing is in use half of its time: latency is the bottleneck.
     bool waits_most() const { return busiest_share < 0.5; }
+    /// Whether cycles, and all that is computed from them, are a prediction.
+    bool has_time() const { return series.no_time.empty(); }
     Estimate cycles_per_ray;
     /// The baseline's cycles over this row's; over the same scene, sequence, N, thread map and GPU.
     std::optional<Estimate> speed_up;

@@ -122,6 +122,31 @@ TEST_CASE("every preset has the SMs and capacities of the table of known GPUs") 
     }
 }
 
+TEST_CASE("presets count the instructions of a compiled kernel, and of processors of three levels no time") {
+    for (const GpuPreset& preset : gpu_presets()) {
+        CAPTURE(preset.name);
+        const Gpu gpu = load_gpu(preset.name);
+        REQUIRE(gpu.timing);
+        const Timing& t = *gpu.timing;
+        CHECK(no_time_note(gpu).empty() == (gpu.levels.size() == 2));
+        if (gpu.levels.size() == 3) continue;
+        const bool pairs = gpu.front_end.lanes_per_request_16 == 2;  // Maxwell, Pascal
+        CHECK(t.node_instructions == (pairs ? 60 : 62));
+        CHECK(t.triangle_instructions == (pairs ? 75 : 80));
+        CHECK((t.leaf_instructions >= 24 && t.leaf_instructions <= 32));
+        CHECK(t.shading_instructions == (pairs ? 450 : 400));
+        CHECK((gpu.levels[0].index == SetIndex::xor_fold) == pairs);
+    }
+}
+
+TEST_CASE("no preset says assumed and nothing else") {
+    for (const GpuPreset& preset : gpu_presets())
+        for (const GpuValue& value : gpu_values(preset.name)) {
+            CAPTURE(preset.name, value.key);
+            CHECK(value.source.size() > std::string("assumed: ").size());
+        }
+}
+
 TEST_CASE("a third level is read like the others, and only its absence is no error") {
     const std::string third = R"([l3]
 sets = 7
@@ -303,6 +328,20 @@ dram_gb_s = 256
     CHECK_THAT(message("l1_latency = 30", "l1_latency = 3\noperand_collectors = 2"), Contains("timing.l1_latency"));
     CHECK_THAT(message("schedulers = 4", "schedulers = 4\noperand_collectors = 33"),
                Contains("timing.operand_collectors"));
+    CHECK_THAT(message("schedulers = 4", "schedulers = 4\nleaf_instructions = 100001"),
+               Contains("timing.leaf_instructions") && Contains("100001"));
+    CHECK_THAT(message("schedulers = 4", "schedulers = 4\nempty_request_cycles = 1001"),
+               Contains("timing.empty_request_cycles") && Contains("1001"));
+    CHECK_THAT(message("schedulers = 4", "schedulers = 4\nnot_predicted = true"),
+               Contains("timing.not_predicted") && Contains("text"));
+    CHECK(gpu.timing->leaf_instructions == 0);
+    CHECK(gpu.timing->empty_request_cycles == 0);
+    CHECK(no_time_note(gpu).empty());
+    Gpu silent = gpu;
+    silent.timing->not_predicted = "clock unknown";
+    CHECK(no_time_note(silent) == "time: not predicted for tiny (clock unknown; see cachesim/MODEL.md)");
+    silent.levels.push_back(silent.levels.back());
+    CHECK_THAT(no_time_note(silent), Catch::StartsWith("CPU time: not predicted for tiny ("));
 }
 
 TEST_CASE("what is carved out of a cache takes whole ways") {

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Timed replays, --set, and the import of RTWARP01 traces, from outside."""
+import csv
 import os
 import struct
 import subprocess
+import sys
 
-from support import GPU_FILE, RAYCACHE, ROOT, SCENE, ProgramTest, main
+from support import GPU_FILE, LAUNCHES, RAYCACHE, ROOT, SCENE, ProgramTest, main
 
 
 def rtwarp(records, magic=b"RTWARP01", nodes=0x7F5000000000):
@@ -56,7 +58,10 @@ class Timed(ProgramTest):
         self.assertGreaterEqual(len(names), 11)
         for name in names:
             row = self.succeeds("replay", trace, "--gpu", name, "--timed", "--json").json["rows"][0]
-            self.assertGreater(row["cycles"], 0)
+            if name.startswith("xeon"):
+                self.assertIsNone(row["cycles"])
+            else:
+                self.assertGreater(row["cycles"], 0)
             for level in ("l1", "l2", "l3"):
                 self.assertEqual(level in row, level != "l3" or name.startswith("xeon"), name)
         self.path("untimed.toml").write_text(GPU_FILE)
@@ -89,6 +94,99 @@ class Timed(ProgramTest):
         trace = self.capture("trace.rct", "--bounces", "0")
         self.refuses(2, "replay", trace, "--gpu", "v100", "--timed", "--by", "bounce")
         self.refuses(2, "replay", trace, "--gpu", "v100", "--timed", "--counters", "ncu")
+
+
+class NoTime(ProgramTest):
+    """A GPU file with `not_predicted`: traffic, and no time in any report."""
+
+    NOTE = "CPU time: not predicted for xeon-8380 ("
+    OF_TIME = ("cycles", "seconds", "cycles_per_ray", "speed_up", "bottleneck", "busiest", "occupancy", "l2_gb_s", "dram_gb_s",
+               "visit_latency")
+
+    def traces(self):
+        return (self.capture("cp.rct", "--strategy", "cranley-patterson"), self.capture("coherent.rct", "--strategy", "coherent"))
+
+    def test_a_table_has_the_traffic_and_says_that_time_is_not_predicted_and_where_to_read_why(self):
+        for command in (["compare", *self.traces()], ["replay", "cp.rct"], ["compare", "--scene", *SCENE, *LAUNCHES, "--spp", "4"]):
+            with self.subTest(command[0]):
+                text = self.succeeds(*command, "--gpu", "xeon-8380", "--timed").text
+                self.assertEqual(text.count("note: " + self.NOTE), 1)
+                self.assertIn("cachesim/MODEL.md", text)
+                table = text.split("\n\n")[1].splitlines()[1:]
+                for line in table[1:]:
+                    self.assertRegex(line, r"^\S+ +\d+( +-){6}$")
+                self.assertRegex(text, r"DRAM sectors\n.*\n\S+ .* [1-9]\d+\n")
+                self.assertNotIn("nan", text)
+                self.assertNotIn("slots on average", text)
+
+    def test_json_has_null_and_csv_nothing_where_a_time_would_stand_and_other_gpus_keep_theirs(self):
+        command = ["compare", *self.traces(), "--gpu", "rtx-3070,xeon-8380", "--timed"]
+        report = self.succeeds(*command, "--json").json
+        self.assertEqual(sum(self.NOTE in note for note in report["notes"]), 1)
+        for row in report["rows"]:
+            cpu = row["gpu"] == "xeon-8380"
+            for key in self.OF_TIME:
+                if key != "speed_up" or row["strategy"] == "coherent":
+                    self.assertEqual(row[key] is None, cpu, key)
+            for value in row["utilisation"].values():
+                self.assertEqual(value is None, cpu)
+            for key in ("rays", "warp_accesses", "dram_sectors"):
+                self.assertGreater(row[key], 0)
+            self.assertGreater(row["l1"]["requests"], row["l1"]["hits"])
+        rows = list(csv.DictReader(self.succeeds(*command, "--csv").text.splitlines()))
+        self.assertEqual(len(rows), 4)
+        for row in rows:
+            for key in self.OF_TIME + ("issue", "l1_port", "dram", "l2_mshrs"):
+                if key != "speed_up" or row["strategy"] == "coherent":
+                    self.assertEqual(row[key] == "", row["gpu"] == "xeon-8380", key)
+            self.assertGreater(int(row["dram_sectors"]), 0)
+
+    def test_explain_has_the_traffic_and_no_replays_in_time(self):
+        command = ["explain", *self.traces(), "--gpu", "xeon-8380"]
+        text = self.succeeds(*command).text
+        self.assertIn(self.NOTE, " ".join(text.split()))
+        self.assertNotIn("perfect L1", text)
+        report = self.succeeds(*command, "--json").json
+        self.assertIsNone(report["timed"])
+        self.assertIn(self.NOTE, report["time_sentence"])
+        self.assertNotIn("not predicted", self.succeeds(*command, "--counts-only").text)
+
+    def test_quality_and_sweep_have_the_pictures_errors_and_no_speed_up(self):
+        common = [*SCENE, "--resolution", "32x32", "--spp", "4", "--reference-spp", "16", "--reference", "reference.exr",
+                  "--gpu", "xeon-8380"]
+        cases = {"quality": ["--strategy", "cranley-patterson,micro-jitter"], "sweep": ["--mu", "0,1", "--strategy", "random"]}
+        for command, options in cases.items():
+            with self.subTest(command):
+                text = self.succeeds(command, *common, *options).text
+                self.assertIn("note: " + self.NOTE, text)
+                self.assertNotIn("nan", text)
+                self.assertNotRegex(text, r"speed [0-9]|predicted [0-9]")
+                report = self.succeeds(command, *common, *options, "--json").json
+                self.assertTrue(any(self.NOTE in note for note in report["notes"]))
+                for row in report["rows"]:
+                    self.assertIsNone(row["predicted_seconds"])
+                    self.assertIsNone(row["speed_up"])
+                    self.assertGreater(row["rmse"]["value"], 0)
+                for row in csv.DictReader(self.succeeds(command, *common, *options, "--csv").text.splitlines()):
+                    self.assertEqual((row["predicted_seconds"], row["speed_up"]), ("", ""))
+        self.succeeds("quality", *common, *cases["quality"], "-o", "pictures")
+        self.path("sweep.json").write_bytes(self.succeeds("sweep", *common, *cases["sweep"], "--json").stdout)
+        plot = subprocess.run([sys.executable, ROOT / "tools/plot_sweep", "sweep.json", "-o", "sweep.png"], cwd=self.folder,
+                              capture_output=True, timeout=300, check=False)
+        self.assertEqual(plot.returncode, 1)
+        self.assertIn(b"not predicted", plot.stderr)
+
+    def test_the_file_decides_not_the_name_and_an_empty_reason_gives_times(self):
+        trace = self.capture("trace.rct")
+        gpu = (ROOT / "cachesim/gpus/v100.toml").read_text()
+        self.path("mine.toml").write_text(gpu.replace("[timing]\n", "[timing]\nnot_predicted = \"clock unknown\"\n"))
+        text = self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed").text
+        self.assertIn("note: time: not predicted for v100 (clock unknown; see cachesim/MODEL.md)", text)
+        for gpu, change in (("mine.toml", "timing.not_predicted=''"), ("xeon-8380", 'timing.not_predicted=""')):
+            row = self.succeeds("replay", trace, "--gpu", gpu, "--timed", "--json", "--set", change).json["rows"][0]
+            self.assertGreater(row["cycles"], 0)
+        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.not_predicted=1",
+                     mentions=["timing.not_predicted", "text"])
 
 
 class Rtwarp(ProgramTest):

@@ -15,7 +15,7 @@ struct TimedReplay::Impl {
     Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal)
         : regions(checked(all_regions)),
           ids(regions, checked_timed(gpu).l1().line_bytes),
-          rules(gpu, regions, ids, ideal),
+          rules(gpu, all_regions, ids, ideal),  // the links, too
           memory(rules),
           streamed(regions, gpu.l1().sector_bytes) {
         total.sample = sample;

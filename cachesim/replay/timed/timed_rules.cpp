@@ -46,6 +46,7 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
         shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
         instructions.push_back(instructions_of(timing, regions[i].kind));
     }
+    if (timing.leaf_instructions > 0) leaves.emplace(regions);
 }
 
 }  // namespace raycache::cachesim

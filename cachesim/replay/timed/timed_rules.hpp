@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/timed/leaf_starts.hpp"
 #include "cachesim/replay/timed/visit.hpp"
 #include "traces/header.hpp"
 
@@ -43,6 +45,7 @@ struct TimedRules {
     std::vector<LineMap> maps;                ///< of each level
     std::vector<LoadShape> shapes;            ///< of each region
     std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads
+    std::optional<LeafStarts> leaves;         ///< if they cost instructions of their own
     std::uint32_t sectors_per_line;
     int line_of_sector;  ///< log2 of it
     unsigned cta_slots;

@@ -47,6 +47,7 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
         warp.end = warp.next + trace.records.size();
         warp.elements = trace.elements.data();
         warp.left = 0;
+        warp.among_triangles = false;
         warp.age = placed_++;
         warp.since = from;
         ++statistics.warps;
@@ -65,7 +66,18 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
 std::uint32_t TimedSm::shading(Warp& warp) const {
     std::uint32_t starts = 0;
     for (; warp.next != warp.end && !warp.next->is_access(); ++warp.next) ++starts;
+    if (starts > 0) warp.among_triangles = false;
     return starts * rules_.timing.shading_instructions;
+}
+
+/// Instructions that its next access, by so many lanes, takes for a leaf that begins there.
+std::uint32_t TimedSm::leaf(Warp& warp, std::uint32_t region, unsigned lanes) const {
+    const LeafStarts& leaves = *rules_.leaves;
+    const bool triangles = leaves.is_triangle(region);
+    const bool begins = triangles && leaves.begins(region, {warp.elements, lanes}, warp.among_triangles);
+    // Texels are read between the triangles of a leaf; vectors of one record begin together.
+    if (warp.left == 0 && !leaves.is_texel(region)) warp.among_triangles = triangles;
+    return begins ? rules_.timing.leaf_instructions : 0;
 }
 
 /// The flight takes the warp's next access, which stands before no ray that begins; false if there is none.
@@ -90,7 +102,8 @@ bool TimedSm::begin_visit(std::uint32_t number) {
     flight.region = record.region;
     flight.shape = &rules_.shapes[record.region];
     flight.instructions = rules_.instructions[record.region];
-    flight.visit.begin(*flight.shape, mask, warp.elements);
+    if (rules_.leaves) flight.instructions += leaf(warp, record.region, lanes);
+    flight.visit.begin(*flight.shape, mask, warp.elements, rules_.gpu.simd_width);
     warp.elements += lanes;
     flight.issued = flight.at_port = flight.there = 0;
     flight.first_issue = never;

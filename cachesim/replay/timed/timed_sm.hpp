@@ -66,6 +66,7 @@ private:
         const traces::Record *next = nullptr, *end = nullptr;
         const std::uint32_t* elements = nullptr;  ///< of `next`, from the first lane left on
         std::uint32_t left = 0;                   ///< lanes of `next` that have not had their turn; 0: none has
+        bool among_triangles = false;             ///< the last access but for texels was to them (LeafStarts)
         std::uint32_t flights = 0;                ///< that have not ended
         std::uint64_t age = 0;                    ///< order of becoming resident
         Cycle since = 0;                          ///< it is resident
@@ -109,6 +110,7 @@ private:
         Cycle port_free = 0;
         std::uint32_t position = 0;  ///< of the load at the front: the element to go on with
         std::uint32_t sector = 0;    ///< and how many of its sectors are done (serve_any())
+        bool begun = false;          ///< groups of lanes before its first are done (serve_any())
         /// L1Port::tags: when the data path and the tag stage take one more; the latter in parts of a cycle, a tag
         /// each.
         double data_free = 0;
@@ -150,6 +152,7 @@ private:
     }
 
     std::uint32_t shading(Warp&) const;
+    std::uint32_t leaf(Warp&, std::uint32_t region, unsigned lanes) const;
     bool begin_visit(std::uint32_t flight);
     void make_ready(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);

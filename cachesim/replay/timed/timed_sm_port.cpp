@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "cachesim/replay/timed/timed_sm.hpp"
 
@@ -44,6 +45,7 @@ Cycle TimedSm::end_load(L1& l1, Cycle begin, Cycle end) {
     const Load load = l1.queue.front();
     Flight& flight = flights_[load.flight];
     l1.position = l1.sector = 0;
+    l1.begun = false;
     l1.queue.pop();
     statistics.l1_port.busy += static_cast<double>(end - begin);
     if (!flow_) {
@@ -235,7 +237,8 @@ void TimedSm::take_port(L1& l1, bool new_line, Cycle time) {
     statistics.l1_tags.busy += 1;
 }
 
-/// Any load: each group of lanes by itself, its sectors in descending order.
+/// Any load: each group of lanes by itself, its sectors in descending order. Groups without an active lane pass, too,
+/// if Timing::empty_request_cycles says so.
 Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
     L1& l1 = l1s_[number];
     const Load load = l1.queue.front();
@@ -245,8 +248,11 @@ Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
     const LoadShape& shape = *flight.shape;
     const bool banks = rules_.timing.l1_port == L1Port::banks;
     const Cycle step = rules_.ideal.infinite_bandwidth ? 0 : 1;
+    const Cycle empty = step * rules_.timing.empty_request_cycles;
     const std::uint32_t k = load.number, bank_mask = rules_.timing.l1_banks - 1;
     const Cycle begin = time;
+    if (!std::exchange(l1.begun, true)) time += empty * visit.empty_before(0);
+    Cycle group = time;            // it can begin
     std::uint32_t used = 0;        // banks taken in this cycle
     std::uint64_t before = never;  // the lowest sector of this group so far
     if (l1.sector > 0)
@@ -267,7 +273,7 @@ Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
                 time += step;
                 used = 0;
             }
-            if (time >= end) return end;
+            if (time >= end) return std::max(end, group);
             data.arrival = std::max(data.arrival, time);
             if (rules_.ideal.perfect_l1)
                 ++statistics.l1.hits;
@@ -283,11 +289,12 @@ Cycle TimedSm::serve_any(std::uint8_t number, Cycle time, Cycle end) {
         }
         if (visit.ends_group(l1.position) && l1.position + 1 < visit.count()) {
             before = never;
-            time += step;  // the next group has a cycle of its own
+            // the next group has a cycle of its own
+            group = time += step + empty * visit.empty_before(l1.position + 1);
             used = 0;
         }
     }
-    return end_load(l1, begin, time + step);
+    return end_load(l1, begin, time + step + empty * visit.empty_behind());
 }
 
 }  // namespace raycache::cachesim

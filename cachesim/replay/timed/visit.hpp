@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
@@ -80,9 +81,11 @@ private:
 /// first pieces.
 class Visit {
 public:
-    void begin(const LoadShape& shape, std::uint32_t mask, const std::uint32_t* elements) {
+    /// `mask`: lanes of one vector of `simd_width`.
+    void begin(const LoadShape& shape, std::uint32_t mask, const std::uint32_t* elements, unsigned simd_width) {
         count_ = 0;
         ends_ = 0;
+        empty_behind_ = 0;
         if (shape.lanes_per_request == traces::warp_lanes) {
             add_group(elements, static_cast<unsigned>(std::popcount(mask)));
             if (shape.apart)
@@ -90,9 +93,15 @@ public:
                     elements_[i] = shape.first_piece + elements_[i] * shape.piece_stride;
             return;
         }
-        for (unsigned lane = 0; lane < traces::warp_lanes; lane += shape.lanes_per_request) {
+        const unsigned first =
+            static_cast<unsigned>(std::countr_zero(mask)) & ~(std::max(simd_width, shape.lanes_per_request) - 1);
+        for (unsigned lane = first; lane < first + simd_width; lane += shape.lanes_per_request) {
             const std::uint32_t group = mask >> lane & ((1u << shape.lanes_per_request) - 1);
-            if (!group) continue;
+            if (!group) {
+                ++empty_behind_;
+                continue;
+            }
+            empty_before_[count_] = static_cast<std::uint8_t>(std::exchange(empty_behind_, 0));
             const auto lanes = static_cast<unsigned>(std::popcount(group));
             add_group(elements, lanes);
             elements += lanes;
@@ -104,6 +113,10 @@ public:
     const std::uint32_t* data() const { return elements_.data(); }
     /// Whether element i is the last of its group.
     bool ends_group(unsigned i) const { return ends_ >> i & 1; }
+    /// Groups without an active lane, where lanes go in several: right before the one that element i is the first of,
+    /// and behind the last.
+    unsigned empty_before(unsigned i) const { return empty_before_[i]; }
+    unsigned empty_behind() const { return empty_behind_; }
 
 private:
     void add_group(const std::uint32_t* elements, unsigned lanes) {
@@ -123,7 +136,8 @@ private:
     }
 
     std::array<std::uint32_t, traces::warp_lanes> elements_{};
-    unsigned count_ = 0;
+    std::array<std::uint8_t, traces::warp_lanes> empty_before_{};  ///< by the first element of a group
+    unsigned count_ = 0, empty_behind_ = 0;
     std::uint32_t ends_ = 0;
 };
 
