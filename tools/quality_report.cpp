@@ -111,7 +111,8 @@ std::string to_text(const QualityReport& report) {
             "\nworst pair: the dimensions without which most of the shared error goes, and how much of it (negative: "
             "none "
             "lowers it)";
-    if (timed) text += fmt::format("\nspeed-up: predicted for {}, ±: 95 % confidence", report.gpu);
+    if (timed && any([](const QualityRow& r) { return r.timing && std::isfinite(r.timing->seconds); }))
+        text += fmt::format("\nspeed-up: predicted for {}, ±: 95 % confidence", report.gpu);
     if (equal_time) text += "; N equal time: what fits into the baseline's time";
     text += "\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
