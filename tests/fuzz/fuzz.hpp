@@ -36,8 +36,6 @@ bool accepts(Action action) {
     } catch (const Error& e) {
         const std::string what = e.what();
         require(!what.empty() && what.find('\n') == std::string::npos, "a refusal is one line");
-    } catch (const UsageError& e) {
-        require(e.what()[0] != '\0', "a refusal says something");
     }
     return false;
 }

@@ -1,5 +1,5 @@
-// glTF scenes with their images: loading, and where that succeeds the BVH, Embree's scene and a few paths. Mutations keep
-// the frame of a .glb whole and change values of its JSON; blind ones would nearly all end at the first bracket.
+// glTF scenes with their images: loading, and where that succeeds the BVH, Embree's scene and a few paths. Mutations
+// keep the frame of a .glb whole and change values of its JSON; blind ones would nearly all end at the first bracket.
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -15,8 +15,8 @@
 
 using namespace raycache;
 using namespace raycache::tracer;
-using nlohmann::json;
 using fuzz::Bytes;
+using nlohmann::json;
 
 namespace {
 
@@ -50,18 +50,30 @@ Bytes put_together(Glb glb) {
 
 json odd_value(std::mt19937& random) {
     switch (random() % 12) {
-        case 0: return -1;
-        case 1: return random() % 8;
-        case 2: return 4294967295u;
-        case 3: return 1e39;
-        case 4: return -1e-40;
-        case 5: return random() % 100000;
-        case 6: return nullptr;
-        case 7: return std::string("data:application/octet-stream;base64,AAAA");
-        case 8: return json::array({0, 1, 2});
-        case 9: return json::object();
-        case 10: return 5120 + random() % 8;  // near the component types
-        default: return std::ldexp(1.0, static_cast<int>(random() % 140) - 10);
+        case 0:
+            return -1;
+        case 1:
+            return random() % 8;
+        case 2:
+            return 4294967295u;
+        case 3:
+            return 1e39;
+        case 4:
+            return -1e-40;
+        case 5:
+            return random() % 100000;
+        case 6:
+            return nullptr;
+        case 7:
+            return std::string("data:application/octet-stream;base64,AAAA");
+        case 8:
+            return json::array({0, 1, 2});
+        case 9:
+            return json::object();
+        case 10:
+            return 5120 + random() % 8;  // near the component types
+        default:
+            return std::ldexp(1.0, static_cast<int>(random() % 140) - 10);
     }
 }
 

@@ -36,8 +36,8 @@ std::optional<Parts> take_apart(std::span<const std::uint8_t> file) {
     Parts parts;
     parts.head.assign(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(head));
     parts.index.assign(file.end() - static_cast<std::ptrdiff_t>(index), file.end());
-    for (std::size_t at = format::index_head_bytes;
-         at + format::index_entry_bytes + format::index_tail_bytes <= index; at += format::index_entry_bytes) {
+    for (std::size_t at = format::index_head_bytes; at + format::index_entry_bytes + format::index_tail_bytes <= index;
+         at += format::index_entry_bytes) {
         const auto offset = load<std::uint64_t>(parts.index.data() + at);
         const auto size = load<std::uint32_t>(parts.index.data() + at + 8);
         if (offset > file.size() || size > file.size() - offset || size < format::block_head_bytes + 8)

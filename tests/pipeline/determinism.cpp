@@ -55,7 +55,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("one thread and two write the same trace, byte for byte") {
+TEST_CASE("one thread and two write the same trace, byte for byte", "[threads]") {
     const tracer::Capture capture(small_courtyard(), small_settings("micro-jitter"));
     std::string one, two;
     {
@@ -70,7 +70,7 @@ TEST_CASE("one thread and two write the same trace, byte for byte") {
     CHECK(one == two);
 }
 
-TEST_CASE("a trace file holds the very warps that the fused path replays") {
+TEST_CASE("a trace file holds the very warps that the fused path replays", "[threads]") {
     const tracer::Capture capture(small_courtyard(), small_settings("cranley-patterson"));
     const TemporaryTrace file(capture);
     const traces::Reader reader(file.path());
