@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Every command that works in several threads gives what one thread gives; under ThreadSanitizer (tools/test --threads)
+"""Every command that works in several threads gives what one thread gives; under ThreadSanitizer (tools/test
+--threads)
 the same runs show that no two threads touch the same memory unordered."""
 import os
 import unittest
@@ -44,7 +45,8 @@ class Threads(ProgramTest):
 
     def test_replay_and_explain_of_traces(self):
         for strategy in ("coherent", "cranley-patterson"):
-            self.capture(strategy + ".rct", "--strategy", strategy)
+            done = self.run_program("capture", *SCENE, *TRACED, "--strategy", strategy, "-o", strategy + ".rct")
+            self.assertEqual(done.code, 0, done)
         self.same_for_all_threads("replay", "coherent.rct", *GPU)
         self.same_for_all_threads("explain", "cranley-patterson.rct", "coherent.rct", *GPU)
 
