@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""Every command that works in several threads gives what one thread gives; under ThreadSanitizer (tools/test
---threads)
+"""Every command that works in several threads gives what one thread gives; under ThreadSanitizer (tools/test --threads)
 the same runs show that no two threads touch the same memory unordered."""
 import os
 import unittest
