@@ -3,6 +3,8 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
+#include "tools/interruption.hpp"
 #include "tools/options.hpp"
 #include "tracer/capture.hpp"
 
@@ -21,12 +23,16 @@ void run(const Options& o) {
     const tracer::CaptureSettings settings = o.sampling.capture(o.scene, o.sequence, o.decorrelation, o.spp);
     const std::string adjusted = settings_warning(settings);
     if (!adjusted.empty()) warn(adjusted);
+    check_outputs({o.output});
+    advise_if_interrupted("a capture cannot go on where it ended: run the same command again");
     const auto limit = o.threads.apply();
-    const auto scene = o.scene.prepare({o.output});
+    Progress progress("capture");
+    progress.expect("trace", Work::trace, trace_cost(settings));
+    const auto scene = o.scene.prepare({o.output}, progress);
     const tracer::Capture capture(*scene, settings);
-    ProgressBar bar("capture", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(),
-                    "rays");
-    tracer::write_capture(capture, o.output, [&](std::uint64_t warps, std::uint64_t rays) { bar.add(warps, rays); });
+    const auto stage = progress.begin(
+        "trace", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(), "rays");
+    tracer::write_capture(capture, o.output, [&](std::uint64_t warps, std::uint64_t rays) { stage.add(warps, rays); });
 }
 
 }  // namespace

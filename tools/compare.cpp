@@ -5,6 +5,8 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
+#include "tools/interruption.hpp"
 #include "tools/options.hpp"
 #include "tools/report_options.hpp"
 #include "traces/error.hpp"
@@ -23,7 +25,7 @@ struct Options {
     ThreadOptions threads;
 };
 
-void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
+void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus, Progress& progress) {
     std::vector<tracer::CaptureSettings> settings;
     std::set<std::string> warnings;
     for (const std::string& sequence : o.sequences)
@@ -34,11 +36,17 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus) {
             }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
-    const auto scene = o.scene.prepare(o.report.outputs());
+    advise_if_interrupted(
+        "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare those");
+    double seconds = 0;
+    for (const auto& s : settings)
+        seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, o.report.timed);
+    progress.expect("replay", o.report.timed ? Work::timed_replay : Work::replay, seconds);
+    const auto scene = o.scene.prepare(o.report.outputs(), progress);
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     captures.reserve(settings.size());
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    o.report.replay_and_publish(sources_of(captures), {}, gpus);
+    o.report.replay_and_publish(sources_of(captures), {}, gpus, progress);
 }
 
 void run(const Options& o) {
@@ -46,9 +54,10 @@ void run(const Options& o) {
         throw UsageError("nothing to compare; expected either trace files or --scene, not both");
     const auto gpus = o.report.load_gpus(o.traces);
     const auto limit = o.threads.apply();
-    if (o.traces.empty()) return compare_fused(o, gpus);
+    Progress progress("compare");
+    if (o.traces.empty()) return compare_fused(o, gpus, progress);
     const TraceFiles files(o.traces);
-    o.report.replay_and_publish(files.sources, o.traces, gpus);
+    o.report.replay_and_publish(files.sources, o.traces, gpus, progress);
 }
 
 }  // namespace

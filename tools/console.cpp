@@ -1,35 +1,16 @@
 #include "tools/console.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 
 #include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
-
-/// 1234567 -> "1.2 M"
-std::string short_number(double value) {
-    const char* unit = "";
-    for (const char* next : {"k", "M", "G"}) {
-        if (value < 1000) break;
-        value /= 1000;
-        unit = next;
-    }
-    return fmt::format("{:.{}f} {}", value, value < 10 ? 1 : 0, unit);
-}
-
-std::string short_time(double seconds) {
-    const auto s = std::lround(seconds);
-    if (s >= 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
-    return s >= 60 ? fmt::format("{} min {:02} s", s / 60, s % 60) : fmt::format("{} s", s);
-}
 
 /// Messages carry names from files: no line break and no control character may reach the terminal.
 std::string one_line(std::string text) {
@@ -39,15 +20,44 @@ std::string one_line(std::string text) {
     return text;
 }
 
+/// "1234 bytes", "1.2 MiB"
+std::string short_size(std::uint64_t bytes) {
+    constexpr std::uint64_t kib = 1024;
+    if (bytes < 10 * kib) return fmt::format("{} bytes", bytes);
+    double size = static_cast<double>(bytes) / kib;
+    const char* unit = "KiB";
+    for (const char* next : {"MiB", "GiB", "TiB"}) {
+        if (size < kib) break;
+        size /= kib;
+        unit = next;
+    }
+    return fmt::format("{:.{}f} {}", size, size < 10 ? 1 : 0, unit);
+}
+
+struct Status {
+    std::mutex mutex;
+    std::string line;
+};
+Status& status() {
+    static Status& only = *new Status;  // never destroyed: threads may still speak
+    return only;
+}
+
+constexpr const char* wipe = "\r\x1b[K";
+
 }  // namespace
 
 std::string program_name() { return "raycache " RAYCACHE_VERSION; }
 
-void warn(const std::string& message) { fmt::print(stderr, "raycache: warning: {}\n", one_line(message)); }
+void warn(const std::string& message) { say(fmt::format("raycache: warning: {}\n", one_line(message))); }
 
 int fail(const std::string& message, int exit_code) {
-    fmt::print(stderr, "raycache: error: {}\n", one_line(message));
+    say(fmt::format("raycache: error: {}\n", one_line(message)));
     return exit_code;
+}
+
+void say_written(const std::string& path, std::uint64_t bytes) {
+    say(fmt::format("raycache: wrote {}, {}\n", one_line(path), short_size(bytes)));
 }
 
 void print(const std::string& text) {
@@ -55,37 +65,17 @@ void print(const std::string& text) {
         throw Error(fmt::format("cannot write the result to stdout: {}", std::strerror(errno)));
 }
 
-ProgressBar::ProgressBar(std::string label, std::uint64_t total, std::string unit)
-    : label_(std::move(label)),
-      unit_(std::move(unit)),
-      total_(total),
-      terminal_(isatty(STDERR_FILENO) != 0),
-      start_(std::chrono::steady_clock::now()),
-      drawn_(start_) {}
-
-ProgressBar::~ProgressBar() {
-    if (terminal_ && drawn_ != start_) fmt::print(stderr, "\r\x1b[K");
+void say(const std::string& text) {
+    const std::lock_guard lock(status().mutex);
+    const bool drawn = !status().line.empty();
+    std::fputs(((drawn ? wipe : "") + text + (drawn ? status().line : "")).c_str(), stderr);
 }
 
-void ProgressBar::add(std::uint64_t work, std::uint64_t units) {
-    if (!terminal_) return;
-    const std::lock_guard lock(mutex_);
-    done_ += work;
-    units_ += units;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - drawn_ < std::chrono::milliseconds(100)) return;
-    drawn_ = now;
-    draw(std::chrono::duration<double>(now - start_).count());
-}
-
-void ProgressBar::draw(double seconds) const {
-    constexpr int width = 24;
-    const double share = total_ == 0 ? 1 : std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
-    const int filled = static_cast<int>(share * width);
-    const std::string left = share > 0 ? short_time(seconds / share - seconds) : "?";
-    fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3.0f} %  {}{}/s  {} left", label_, "", filled, "", width - filled,
-               100 * share, short_number(static_cast<double>(units_) / seconds), unit_, left);
-    std::fflush(stderr);
+void set_status(const std::string& line) {
+    const std::lock_guard lock(status().mutex);
+    if (line.empty() && status().line.empty()) return;
+    status().line = line;
+    std::fputs((wipe + line).c_str(), stderr);
 }
 
 }  // namespace raycache::tools

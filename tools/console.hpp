@@ -1,9 +1,7 @@
 // What a person sees: results on stdout, everything else (warnings, progress, errors) on stderr.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <string>
 
 namespace raycache::tools {
@@ -17,29 +15,16 @@ void warn(const std::string& message);
 /// Prints "raycache: error: …" on one line and returns the exit code.
 int fail(const std::string& message, int exit_code);
 
+/// Prints "raycache: wrote FILE, SIZE".
+void say_written(const std::string& path, std::uint64_t bytes);
+
 /// Prints to stdout. Throws Error where that fails (a full disk behind a redirection).
 void print(const std::string& text);
 
-/// A progress line on stderr with rate and time left. Shown only on a terminal, at most ten times a second.
-class ProgressBar {
-public:
-    /// `total` in units of work; `unit` names what the rate counts, such as "rays".
-    ProgressBar(std::string label, std::uint64_t total, std::string unit);
-    ~ProgressBar();  ///< wipes the line
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
+/// To stderr as it is, as far as that goes: what it cannot take must not end the work.
+void say(const std::string& text);
 
-    /// Thread-safe.
-    void add(std::uint64_t work, std::uint64_t units);
-
-private:
-    void draw(double seconds) const;
-
-    std::string label_, unit_;
-    std::uint64_t total_, done_ = 0, units_ = 0;
-    bool terminal_;
-    std::mutex mutex_;
-    std::chrono::steady_clock::time_point start_, drawn_;
-};
+/// The line at the bottom of the terminal, which everything else that is said goes above; empty: none.
+void set_status(const std::string& line);
 
 }  // namespace raycache::tools

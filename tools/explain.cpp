@@ -5,6 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
 #include "tools/explain_job.hpp"
 #include "tools/gpu_options.hpp"
 #include "tools/heat_map.hpp"
@@ -35,7 +36,7 @@ std::string samples_text(std::size_t count) {
 }
 
 void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::vector<LaunchSource>& sources,
-                       const std::vector<std::string>& names) {
+                       const std::vector<std::string>& names, Progress& progress) {
     for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, names[i], "explain");
     ExplainRequest request;
     request.sources = {&sources[0], &sources[1]};
@@ -46,22 +47,23 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
                                   : cachesim::GroupBy::none;
     request.timed = !o.counts_only;
     request.pixels = !o.heat_map.empty();
-    const Explained done = explain(request);
+    const Explained done = explain(request, progress);
     const cachesim::Explanation& e = done.explanation;
+    Deliveries deliveries;
+    JsonSubject subject{{gpu}, {}};
+    for (std::size_t i = 0; i < 2; ++i)
+        subject.traces.push_back(settings_json(*sources[i].header, o.traces.empty() ? "" : o.traces[i]));
+    deliveries.attempt([&] { print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e)); });
     if (request.pixels)
         write_heat_maps(
             o.heat_map,
             fmt::format("{}, N {}, {}, GPU {}", e.scene, e.spp, samples_text(e.base.launches.size()), e.gpu),
             make_heat_map(e.base.name, *sources[0].header, done.costs[0], gpu),
-            make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu));
-    if (!o.json) return print(cachesim::to_text(e));
-    JsonSubject subject{{gpu}, {}};
-    for (std::size_t i = 0; i < 2; ++i)
-        subject.traces.push_back(settings_json(*sources[i].header, o.traces.empty() ? "" : o.traces[i]));
-    print(o.json.document(cachesim::to_json(e), subject));
+            make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu), deliveries);
+    deliveries.finish();
 }
 
-void explain_scene(const Options& o, const cachesim::Gpu& gpu) {
+void explain_scene(const Options& o, const cachesim::Gpu& gpu, Progress& progress) {
     std::vector<tracer::CaptureSettings> settings;
     std::set<std::string> warnings;
     for (const std::string& strategy : o.strategies) {
@@ -70,10 +72,13 @@ void explain_scene(const Options& o, const cachesim::Gpu& gpu) {
     }
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
-    const auto scene = o.scene.prepare(heat_map_files(o.heat_map));
+    double seconds = 0;
+    for (const auto& s : settings) seconds += trace_cost(s) + explain_cost(s, gpu.timing && !o.counts_only);
+    progress.expect("explain", Work::replay, seconds);
+    const auto scene = o.scene.prepare(heat_map_files(o.heat_map), progress);
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    explain_and_print(o, gpu, sources_of(captures), o.strategies);
+    explain_and_print(o, gpu, sources_of(captures), o.strategies, progress);
 }
 
 void run(const Options& o) {
@@ -89,10 +94,12 @@ void run(const Options& o) {
     const cachesim::Gpu& gpu = gpus.front();
     if (gpu.timing && !o.counts_only) o.gpu.check_timed(gpus);
     refuse_overwriting(o.traces, outputs);
+    check_outputs(outputs);
     const auto limit = o.threads.apply();
-    if (o.traces.empty()) return explain_scene(o, gpu);
+    Progress progress("explain");
+    if (o.traces.empty()) return explain_scene(o, gpu, progress);
     const TraceFiles files(o.traces);
-    explain_and_print(o, gpu, files.sources, o.traces);
+    explain_and_print(o, gpu, files.sources, o.traces, progress);
 }
 
 }  // namespace

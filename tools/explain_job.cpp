@@ -84,7 +84,7 @@ void for_each(std::size_t count, const Use& use) {
 
 }  // namespace
 
-Explained explain(const ExplainRequest& request) {
+Explained explain(const ExplainRequest& request, Progress& progress) {
     check_comparable(request);
     const auto names = names_of(request);
     const cachesim::Gpu& gpu = request.gpu;
@@ -114,7 +114,8 @@ Explained explain(const ExplainRequest& request) {
             explanation.speed_ups.push_back({ideal, {}, {}, none, none});
     }
 
-    ProgressBar bar("explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
+    const auto stage =
+        progress.begin("explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
     std::mutex mutex;
     const auto run_task = [&](std::size_t task) {
         const std::size_t t = task % 2;
@@ -135,7 +136,7 @@ Explained explain(const ExplainRequest& request) {
             warps.clear();
         };
         request.sources[t]->deliver(launch, [&](traces::WarpTrace&& warp) {
-            bar.add(1, count_rays(warp));
+            stage.add(1, count_rays(warp));
             warps.push_back(std::make_shared<const traces::WarpTrace>(std::move(warp)));
             if (warps.size() == warps_at_once) push_all();
         });

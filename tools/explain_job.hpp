@@ -10,6 +10,7 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "tools/launch_source.hpp"
+#include "tools/progress.hpp"
 
 namespace raycache::tools {
 
@@ -29,6 +30,6 @@ struct Explained {
 
 /// Throws Error if the traces are not of the same scene, view and sample indices. The result does not depend on the
 /// number of threads.
-Explained explain(const ExplainRequest&);
+Explained explain(const ExplainRequest&, Progress&);
 
 }  // namespace raycache::tools

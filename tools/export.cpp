@@ -11,6 +11,7 @@
 #include "tools/gpu_options.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/read_launch.hpp"
@@ -96,15 +97,17 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
     refuse_wavefront(header, o.trace, "export");
     const std::uint32_t launch = choose_launch(o, header);
 
+    check_outputs({o.output});
     traces::OutputFile file(o.output);
     cachesim::SectorStream stream(choice, format, gpu.l1().sector_bytes,
                                   [&](std::string_view piece) { file.write(piece); });
     cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
     replay.observe(stream);
-    ProgressBar bar("export", header.warps_per_launch, "warps");
+    Progress progress("export");
+    const auto stage = progress.begin("replay", header.warps_per_launch, "warps");
     traces::read_launch(reader, launch, [&](traces::WarpTrace&& warp) {
         replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
-        bar.add(1, 1);
+        stage.add(1, 1);
     });
     replay.finish();
     stream.flush();

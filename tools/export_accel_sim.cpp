@@ -5,9 +5,10 @@
 #include <filesystem>
 
 #include "tools/console.hpp"
+#include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "traces/accelsim/xz_file.hpp"
 #include "traces/error.hpp"
-#include "traces/output_file.hpp"
 #include "traces/read_launch.hpp"
 
 namespace raycache::tools {
@@ -17,10 +18,11 @@ void write_kernel(const traces::Reader& reader, std::uint32_t launch, const trac
                   const std::string& path) {
     traces::XzFile file(path);
     traces::TracegText text(reader.header(), settings, [&](std::string_view piece) { file.write(piece); });
-    ProgressBar bar("export", reader.header().warps_per_launch, "warps");
+    Progress progress("export");
+    const auto stage = progress.begin("write", reader.header().warps_per_launch, "warps");
     traces::read_launch(reader, launch, [&](const traces::WarpTrace& warp) {
         text.add(warp);
-        bar.add(1, 1);
+        stage.add(1, 1);
     });
     text.finish();
     file.commit();
@@ -45,22 +47,25 @@ std::vector<std::string> accel_sim_files(const std::string& output) {
 
 void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
                       const std::string& output) {
-    if (is_kernel(output)) return write_kernel(reader, launch, settings, output);
+    if (is_kernel(output)) {
+        check_outputs({output});
+        return write_kernel(reader, launch, settings, output);
+    }
     std::error_code error;
     const bool made = std::filesystem::create_directory(output, error);
     if (error || !std::filesystem::is_directory(output, error))
-        throw Error(fmt::format(
-            "{}: expected a folder or room for a new one, found neither; name another folder, or a file that "
-            "ends in .traceg or .traceg.xz",
-            output));
+        throw Error(
+            fmt::format("{}: expected a folder or room for a new one, found {}; name another folder, or a file that "
+                        "ends in .traceg "
+                        "or .traceg.xz",
+                        output, error ? fmt::format("\"{}\"", error.message()) : std::string("a file")));
     const std::filesystem::path folder = output;
     try {
+        check_outputs(accel_sim_files(output));
         write_kernel(reader, launch, settings, folder / kernel_name);
-        traces::OutputFile list(folder / list_name);
-        list.write(fmt::format("{}\n", kernel_name));
-        list.commit();
+        write_text(folder / list_name, fmt::format("{}\n", kernel_name));
     } catch (...) {
-        if (made) std::filesystem::remove_all(folder, error);
+        if (made) std::filesystem::remove(folder, error);  // if it is empty
         throw;
     }
 }

@@ -74,7 +74,8 @@ void check_heat_map_name(const std::string& exr) {
         throw UsageError(fmt::format("--heatmap '{}'; expected a file name that ends in .exr", exr));
 }
 
-void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other) {
+void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other,
+                     Deliveries& deliveries) {
     std::vector<tracer::Channel> channels;
     for (const auto& [layer, map] : {std::pair{"base", &base}, std::pair{"other", &other}}) {
         channels.push_back({fmt::format("{}.DRAM bytes", layer), map->dram_bytes});
@@ -82,8 +83,8 @@ void write_heat_maps(const std::string& exr, const std::string& title, const Hea
         channels.push_back({fmt::format("{}.active lanes", layer), map->active_lanes});
     }
     const auto files = heat_map_files(exr);
-    tracer::write_channels(files[0], base.width, base.height, channels);
-    tracer::write_screen_image(files[1], draw(title, base, other));
+    deliveries.attempt([&] { tracer::write_channels(files[0], base.width, base.height, channels); });
+    deliveries.attempt([&] { tracer::write_screen_image(files[1], draw(title, base, other)); });
 }
 
 }  // namespace raycache::tools

@@ -6,6 +6,7 @@
 
 #include "cachesim/analysis/pixel_costs.hpp"
 #include "cachesim/gpus/gpu.hpp"
+#include "tools/outputs.hpp"
 #include "traces/header.hpp"
 
 namespace raycache::tools {
@@ -37,6 +38,7 @@ void check_heat_map_name(const std::string& exr);
 /// Writes FILE.exr with the layers "base" and "other", each with the channels "DRAM bytes", "L1 miss rate" and "active
 /// lanes", and FILE.png: a row of three panels for each trace and a row of
 /// their differences, with common scales, under a title.
-void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other);
+void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other,
+                     Deliveries&);
 
 }  // namespace raycache::tools

@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/error.hpp"
 #include "traces/rtwarp/import.hpp"
@@ -20,6 +21,9 @@ struct Options {
 
 void run(const Options& o) {
     refuse_overwriting({o.input}, {o.output});
+    check_outputs({o.output});
+    Progress progress("import");
+    const auto stage = progress.begin("read");
     if (traces::looks_like_rtwarp(o.input)) {
         if (o.fuse)
             throw UsageError("--fuse: expected an Accel-Sim trace, found an RTWARP01 trace, whose objects are whole");

@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/interruption.hpp"
 #include "traces/error.hpp"
+#include "traces/partial_file.hpp"
 
 namespace {
 
@@ -26,10 +29,24 @@ void check_counts(CLI::App& app) {
             if (option->get_type_name().find("UINT") != std::string::npos) option->check(check_count);
 }
 
+/// --help or --version.
+int print_help(const CLI::App& app, const CLI::ParseError& asked) {
+    std::ostringstream out, err;
+    const int code = app.exit(asked, out, err);
+    try {
+        raycache::tools::print(out.str());
+    } catch (const raycache::Error& e) {
+        return raycache::tools::fail(e.what(), 1);
+    }
+    return code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     using namespace raycache;
+    tools::handle_signals();
+    traces::on_published(tools::say_written);
     CLI::App app{"Explains why one sampling strategy makes GPU ray tracing faster than another, without a GPU.",
                  "raycache"};
     app.set_version_flag("--version", tools::program_name());
@@ -59,7 +76,7 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& e) {
-        if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+        if (e.get_exit_code() == 0) return print_help(app, e);
         return tools::fail(e.what(), 2);
     } catch (const UsageError& e) {
         return tools::fail(e.what(), 2);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -81,8 +83,14 @@ void SceneOptions::add(CLI::App& app, bool positional) {
     app.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
 }
 
-std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare(const FileNames& outputs) const {
+std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare(const FileNames& outputs, Progress& progress) const {
     if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);  // before anything takes time
+    std::error_code unknown;
+    const std::uintmax_t bytes = std::filesystem::file_size(source, unknown);
+    constexpr std::uint64_t usual_triangles = 300000;
+    progress.expect("load", Work::prepare,
+                    unknown ? load_cost(0, detail != 0 ? detail : usual_triangles) : load_cost(bytes, bytes / 100));
+    const auto stage = progress.begin("load");
     tracer::SceneRequest request;
     request.source = source;
     request.detail = detail;

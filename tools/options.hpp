@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 
@@ -24,7 +25,7 @@ struct SceneOptions {
     void add(CLI::App&, bool positional);
     /// Loads the scene and builds everything on it; warnings go to stderr. Throws UsageError if one of `outputs`, which
     /// the caller is going to write, is a file that the scene is read from.
-    std::unique_ptr<tracer::PreparedScene> prepare(const FileNames& outputs) const;
+    std::unique_ptr<tracer::PreparedScene> prepare(const FileNames& outputs, Progress&) const;
     /// The options as they would be typed, for a trace's provenance.
     std::string command() const;
 };

@@ -41,11 +41,16 @@ void run(const Options& o) {
         check_picture_folder(o.output);
         pictures = quality_picture_names(o.output, request.cases);
     }
-    const QualityReport report = o.common.measure(std::move(request), pictures);
-    if (!o.output.empty()) write_quality_pictures(o.output, report, crop);
-    print(o.common.json  ? o.common.json.document(to_json(report), report.subject)
-          : o.common.csv ? to_csv(report)
-                         : to_text(report));
+    Deliveries deliveries;
+    Progress progress("quality");
+    const QualityReport report = o.common.measure(std::move(request), pictures, deliveries, progress);
+    deliveries.attempt([&] {
+        print(o.common.json  ? o.common.json.document(to_json(report), report.subject)
+              : o.common.csv ? to_csv(report)
+                             : to_text(report));
+    });
+    if (!o.output.empty()) write_quality_pictures(o.output, report, crop, deliveries);
+    deliveries.finish();
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 #include "cachesim/report/estimate.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
+#include "tools/interruption.hpp"
 #include "tools/replay_job.hpp"
 #include "tracer/quality/reference_file.hpp"
 #include "tracer/render.hpp"
@@ -28,6 +30,14 @@ std::uint64_t paths_of(const tracer::CaptureSettings& s) {
     return std::uint64_t{s.width} * s.height * s.strategy.parameters.spp;
 }
 
+/// Of all pictures of the strategies.
+std::uint64_t paths_of(const QualityRequest& request) {
+    std::uint64_t paths = 0;
+    for (const auto& c : request.cases)
+        paths += request.repeats * paths_of(c) * (1 + (request.pairs ? (dimensions_of(c) + 1) / 2 : 0));
+    return paths;
+}
+
 /// The case with another N; a strategy that takes only powers of two gets the next lower one.
 tracer::CaptureSettings with_spp(tracer::CaptureSettings settings, std::uint64_t spp) {
     settings.strategy.parameters.spp = spp;
@@ -42,15 +52,15 @@ tracer::CaptureSettings with_spp(tracer::CaptureSettings settings, std::uint64_t
 class Renderer {
 public:
     Renderer(const tracer::PreparedScene& scene, const tracer::Reference& reference, std::uint64_t repeats,
-             const std::string& label, std::uint64_t paths)
-        : scene_(scene), reference_(reference), repeats_(repeats), bar_(label, paths, "paths") {}
+             const Progress::Stage& stage)
+        : scene_(scene), reference_(reference), repeats_(repeats), stage_(stage) {}
 
     tracer::ErrorMeasures measure(const tracer::CaptureSettings& settings, tracer::Image* first = nullptr) {
         std::vector<tracer::Image> seeds;
         for (std::uint64_t r = 0; r < repeats_; ++r) {
             tracer::RenderSettings one = render_settings(settings);
             one.strategy.parameters.seed += r;
-            seeds.push_back(tracer::render(scene_, one, [&](std::uint64_t done) { bar_.add(done, done); }));
+            seeds.push_back(tracer::render(scene_, one, [&](std::uint64_t done) { stage_.add(done, done); }));
         }
         const auto errors = tracer::measure_errors(seeds, reference_);
         if (first) *first = std::move(seeds.front());
@@ -61,15 +71,13 @@ private:
     const tracer::PreparedScene& scene_;
     const tracer::Reference& reference_;
     std::uint64_t repeats_;
-    ProgressBar bar_;
+    const Progress::Stage& stage_;
 };
 
 void render_cases(const tracer::PreparedScene& scene, const tracer::Reference& reference, const QualityRequest& request,
-                  std::vector<QualityRow>& rows) {
-    std::uint64_t paths = 0;
-    for (const auto& c : request.cases)
-        paths += request.repeats * paths_of(c) * (1 + (request.pairs ? (dimensions_of(c) + 1) / 2 : 0));
-    Renderer renderer(scene, reference, request.repeats, "strategies", paths);
+                  std::vector<QualityRow>& rows, Progress& progress) {
+    const auto stage = progress.begin("strategies", paths_of(request), "paths");
+    Renderer renderer(scene, reference, request.repeats, stage);
     for (QualityRow& row : rows) {
         row.errors = renderer.measure(row.settings, &row.picture);
         if (!request.pairs) continue;
@@ -92,14 +100,16 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
         }
 }
 
-void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows) {
+void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows,
+                   Progress& progress) {
     if (!cachesim::no_time_note(gpu).empty()) {
         for (QualityRow& row : rows) row.timing = {std::nan(""), std::nullopt};
+        progress.expect("replay", Work::timed_replay, 0);
         return;
     }
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const QualityRow& row : rows) captures.push_back(std::make_unique<tracer::Capture>(scene, row.settings));
-    const auto series = replay_timed(sources_of(captures), {gpu});
+    const auto series = replay_timed(sources_of(captures), {gpu}, progress);
     std::vector<cachesim::Sums> cycles(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
         double seconds = 0, samples = 0;
@@ -117,7 +127,7 @@ void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu,
 }
 
 void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Reference& reference,
-                          const QualityRequest& request, std::vector<QualityRow>& rows) {
+                          const QualityRequest& request, std::vector<QualityRow>& rows, Progress& progress) {
     std::vector<tracer::CaptureSettings> cases;
     std::uint64_t paths = 0;
     for (const QualityRow& row : rows) {
@@ -126,7 +136,8 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
         cases.push_back(with_spp(row.settings, static_cast<std::uint64_t>(std::clamp(spp, 1.0, 0x1p32))));
         if (cases.back().strategy.parameters.spp != row.spp()) paths += request.repeats * paths_of(cases.back());
     }
-    Renderer renderer(scene, reference, request.repeats, "equal time", paths);
+    const auto stage = progress.begin("equal time", paths, "paths");
+    Renderer renderer(scene, reference, request.repeats, stage);
     for (std::size_t r = 0; r < rows.size(); ++r) {
         QualityRow::EqualTime& same = rows[r].equal_time.emplace(QualityRow::EqualTime{});
         same.spp = cases[r].strategy.parameters.spp;
@@ -139,10 +150,18 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
     }
 }
 
-tracer::Reference render_new(const tracer::PreparedScene& scene, const tracer::ReferenceSettings& settings) {
-    ProgressBar bar("reference", std::uint64_t{settings.width} * settings.height * ((settings.spp + 1) / 2 * 2),
-                    "paths");
-    return tracer::render_reference(scene, settings, [&](std::uint64_t done) { bar.add(done, done); });
+std::uint64_t paths_of(const tracer::ReferenceSettings& s) {
+    return std::uint64_t{s.width} * s.height * ((s.spp + 1) / 2 * 2);
+}
+
+void advise_kept(const std::string& path) {
+    advise_if_interrupted(fmt::format("the reference {} is kept: the same command starts from it", path));
+}
+
+tracer::Reference render_new(const tracer::PreparedScene& scene, const tracer::ReferenceSettings& settings,
+                             Progress& progress) {
+    const auto stage = progress.begin("reference", paths_of(settings), "paths");
+    return tracer::render_reference(scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
 }
 
 }  // namespace
@@ -168,7 +187,7 @@ void check(const QualityRequest& request) {
 }
 
 std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, const tracer::Reference& reference,
-                                        const QualityRequest& request) {
+                                        const QualityRequest& request, Progress& progress) {
     std::vector<QualityRow> rows;
     for (const auto& c : request.cases) {
         QualityRow& row = rows.emplace_back();
@@ -176,41 +195,70 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
         row.parameters = tracer::SamplingStrategy(c.strategy, dimensions_of(c)).parameters();
     }
     find_baselines(request.baseline, rows);
-    render_cases(scene, reference, request, rows);
+    render_cases(scene, reference, request, rows, progress);
     if (request.gpu) {
-        predict_times(scene, *request.gpu, rows);
+        predict_times(scene, *request.gpu, rows, progress);
         if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())
-            render_at_equal_time(scene, reference, request, rows);
+            render_at_equal_time(scene, reference, request, rows, progress);
     }
     return rows;
 }
 
+void expect_stages(Progress& progress, const QualityRequest& request, double reference) {
+    const double pictures = render_cost(paths_of(request), request.cases.front().paths.bounces);
+    progress.expect("reference", Work::render, reference);
+    progress.expect("strategies", Work::render, pictures);
+    double times = 0;
+    for (const auto& c : request.cases) times += trace_cost(c) + replay_cost(c, true);
+    if (request.gpu) progress.expect("replay", Work::timed_replay, times);
+    if (request.gpu && request.equal_time) progress.expect("equal time", Work::render, pictures);
+}
+
 tracer::Reference find_reference(const tracer::PreparedScene& scene, const tracer::ReferenceSettings& settings,
-                                 const std::string& file, std::string& path) {
+                                 const std::string& file, std::string& path, Deliveries& deliveries,
+                                 Progress& progress) {
     const std::string key = tracer::reference_key(scene, settings);
     path = file.empty() ? tracer::cached_reference_path(key) : file;
     std::error_code error;
+    if (file.empty() && !path.empty()) warn_of_unfinished(path);
     if (!path.empty() && std::filesystem::exists(path, error)) {
-        if (!file.empty()) return tracer::read_reference(path, key);
+        const auto read = [&] {
+            tracer::Reference reference = tracer::read_reference(path, key);
+            progress.expect("reference", Work::render, 0);
+            advise_kept(path);
+            return reference;
+        };
+        if (!file.empty()) return read();
         try {
-            return tracer::read_reference(path, key);
+            return read();
         } catch (const Error& e) {
             warn(fmt::format("cached reference rendered again: {}", e.what()));
         }
     }
-    tracer::Reference reference = render_new(scene, settings);
+    tracer::Reference reference = render_new(scene, settings, progress);
     if (path.empty()) {
         warn("the reference is not kept: neither XDG_CACHE_HOME nor HOME is set");
         return reference;
     }
-    try {
-        if (file.empty()) std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
+    if (file.empty()) std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
+    bool kept = false;
+    const auto keep = [&] {
         tracer::write_reference(path, reference);
-    } catch (const Error& e) {
-        if (!file.empty()) throw;
-        warn(fmt::format("the reference is not kept: {}", e.what()));
-        path.clear();
+        kept = true;
+    };
+    if (!file.empty()) {
+        deliveries.attempt(keep);
+    } else {
+        try {
+            keep();
+        } catch (const Error& e) {
+            warn(fmt::format("the reference is not kept: {}", e.what()));
+        }
     }
+    if (kept)
+        advise_kept(path);
+    else
+        path.clear();
     return reference;
 }
 

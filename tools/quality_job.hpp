@@ -9,6 +9,8 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/report.hpp"
+#include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/quality/error_measures.hpp"
@@ -63,12 +65,16 @@ struct QualityRow {
 /// Throws UsageError for settings out of range, before anything is rendered: call it before the scene is loaded.
 void check(const QualityRequest&);
 
-std::vector<QualityRow> measure_quality(const tracer::PreparedScene&, const tracer::Reference&, const QualityRequest&);
+std::vector<QualityRow> measure_quality(const tracer::PreparedScene&, const tracer::Reference&, const QualityRequest&,
+                                        Progress&);
+
+/// Tells `progress` what find_reference() and measure_quality() will take; `reference`: seconds for a new one.
+void expect_stages(Progress&, const QualityRequest&, double reference);
 
 /// From `file` if it is given and exists, else from the cache, else rendered and kept in that place. A damaged or
 /// different file in the cache is replaced, with a warning; one that the user named is refused (Error). `path`: where
-/// it lies now, empty if nowhere.
+/// it lies now, empty if nowhere. A `file` that cannot be written is a failed delivery.
 tracer::Reference find_reference(const tracer::PreparedScene&, const tracer::ReferenceSettings&,
-                                 const std::string& file, std::string& path);
+                                 const std::string& file, std::string& path, Deliveries&, Progress&);
 
 }  // namespace raycache::tools

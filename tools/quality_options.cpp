@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -43,7 +45,8 @@ std::string QualityOptions::baseline_of(const std::vector<std::string>& strategi
     return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
 }
 
-QualityReport QualityOptions::measure(QualityRequest request, const FileNames& outputs) const {
+QualityReport QualityOptions::measure(QualityRequest request, const FileNames& outputs, Deliveries& deliveries,
+                                      Progress& progress) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
     const auto gpus = gpu.load(outputs);
     gpu.check_timed(gpus);
@@ -62,13 +65,18 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
 
+    std::error_code error;
+    check_outputs(outputs);
+    if (!std::filesystem::exists(reference_file, error)) check_outputs({reference_file});
     const auto limit = threads.apply();
-    const auto prepared = scene.prepare(outputs);
     const tracer::CaptureSettings& first = request.cases.front();
+    expect_stages(progress, request,
+                  render_cost(std::uint64_t{first.width} * first.height * reference_spp, first.paths.bounces));
+    const auto prepared = scene.prepare(outputs, progress);
     QualityReport result;
     tracer::Reference reference =
         find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol"},
-                       reference_file, result.reference_path);
+                       reference_file, result.reference_path, deliveries, progress);
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";
@@ -77,7 +85,7 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     result.repeats = repeats;
     result.width = first.width;
     result.height = first.height;
-    result.rows = measure_quality(*prepared, reference, request);
+    result.rows = measure_quality(*prepared, reference, request, progress);
     result.reference = std::move(reference.mean);
     add_notes(result);
     if (request.gpu)

@@ -10,10 +10,8 @@
 #include "tools/canvas.hpp"
 #include "tools/colour_scale.hpp"
 #include "tools/exposure.hpp"
-#include "tools/outputs.hpp"
 #include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
-#include "traces/output_file.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -164,22 +162,24 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
 }
 
 void write_row(const std::string& stem, const QualityRow& row, const Image& reference, const Scale& scale,
-               float exposure) {
-    tracer::write_image(stem + ".exr", row.picture);
-    tracer::write_image(stem + ".png", row.picture, exposure);
+               float exposure, Deliveries& deliveries) {
+    deliveries.attempt([&] { tracer::write_image(stem + ".exr", row.picture); });
+    deliveries.attempt([&] { tracer::write_image(stem + ".png", row.picture, exposure); });
     Image error = row.picture;
     for (std::size_t p = 0; p < error.pixels.size(); ++p) error.pixels[p] = error.pixels[p] - reference.pixels[p];
-    tracer::write_image(stem + "_error.exr", error);
+    deliveries.attempt([&] { tracer::write_image(stem + "_error.exr", error); });
     Canvas canvas(error.width, error.height + ScaleBar::height + 2 * line + 8);
     const auto luminance = luminance_error(row.picture, reference);
     for (std::uint32_t y = 0; y < error.height; ++y)
         for (std::uint32_t x = 0; x < error.width; ++x)
             canvas.fill(x, y, 1, 1, scale.of(luminance[std::size_t{y} * error.width + x]));
     ScaleBar::draw(canvas, 0, error.height + 4, error.width, scale, "luminance minus reference");
-    tracer::write_screen_image(stem + "_error.png", canvas.image());
+    deliveries.attempt([&] { tracer::write_screen_image(stem + "_error.png", canvas.image()); });
     const auto& blocks = row.errors.blocks;
     if (blocks.columns > 0 && blocks.rows > 0)
-        tracer::write_channels(stem + "_blocks.exr", blocks.columns, blocks.rows, {{"Y", blocks.mean}});
+        deliveries.attempt([&] {
+            tracer::write_channels(stem + "_blocks.exr", blocks.columns, blocks.rows, {{"Y", blocks.mean}});
+        });
 }
 
 }  // namespace
@@ -208,7 +208,6 @@ void check_picture_folder(const std::string& folder) {
     if (error)
         throw Error(fmt::format("--output {}: expected a folder that can be made, found: {}; choose another", folder,
                                 error.message()));
-    const traces::OutputFile probe((std::filesystem::path(folder) / "index.png").string());
 }
 
 std::vector<std::string> quality_picture_names(const std::string& folder,
@@ -224,7 +223,7 @@ std::vector<std::string> quality_picture_names(const std::string& folder,
 }
 
 void write_quality_pictures(const std::string& folder, const QualityReport& report,
-                            const std::optional<Crop>& given_crop) {
+                            const std::optional<Crop>& given_crop, Deliveries& deliveries) {
     const Image& reference = report.reference;
     const Crop crop = given_crop ? *given_crop : worst_crop(report);
     const float exposure = automatic_exposure(reference);
@@ -237,10 +236,12 @@ void write_quality_pictures(const std::string& folder, const QualityReport& repo
     const Scale pixels = symmetric_scale(errors), blocks = symmetric_scale(means);
     const std::filesystem::path path(folder);
     for (const QualityRow& row : report.rows)
-        write_row((path / file_name(label(row, report.rows))).string(), row, reference, pixels, exposure);
-    tracer::write_image((path / "reference.png").string(), reference, exposure);
-    tracer::write_screen_image((path / "index.png").string(),
-                               draw_index(report, reference, crop, pixels, blocks, exposure));
+        write_row((path / file_name(label(row, report.rows))).string(), row, reference, pixels, exposure, deliveries);
+    deliveries.attempt([&] { tracer::write_image((path / "reference.png").string(), reference, exposure); });
+    deliveries.attempt([&] {
+        tracer::write_screen_image((path / "index.png").string(),
+                                   draw_index(report, reference, crop, pixels, blocks, exposure));
+    });
 }
 
 }  // namespace raycache::tools

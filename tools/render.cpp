@@ -3,6 +3,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
 #include "tools/exposure.hpp"
 #include "tools/options.hpp"
 #include "tracer/render.hpp"
@@ -30,14 +31,14 @@ void run(const Options& o, bool given_exposure) {
     settings.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
     const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
 
+    check_outputs({o.output});
     const auto limit = o.threads.apply();
-    const auto scene = o.scene.prepare({o.output});
-    tracer::Image image;
-    {
-        const std::uint64_t paths = std::uint64_t{size.width} * size.height * o.spp;
-        ProgressBar bar("render", paths, "paths");
-        image = tracer::render(*scene, settings, [&](std::uint64_t done) { bar.add(done, done); });
-    }
+    const std::uint64_t paths = std::uint64_t{size.width} * size.height * o.spp;
+    Progress progress("render");
+    progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
+    const auto scene = o.scene.prepare({o.output}, progress);
+    const auto stage = progress.begin("render", paths, "paths");
+    const tracer::Image image = tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
     tracer::write_image(o.output, image, given_exposure ? o.exposure : automatic_exposure(image));
 }
 

@@ -15,8 +15,9 @@ struct Options {
 void run(const Options& o) {
     const auto gpus = o.report.load_gpus({o.path});
     const auto limit = o.threads.apply();
+    Progress progress("replay");
     const TraceFiles files({o.path});
-    o.report.replay_and_publish(files.sources, {o.path}, gpus);
+    o.report.replay_and_publish(files.sources, {o.path}, gpus, progress);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
 std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                                const MakeReplay& make_replay) {
+                                Progress& progress, const MakeReplay& make_replay) {
     std::vector<Series> series;
     std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
     std::uint64_t warps = 0;
@@ -39,7 +39,7 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
         warps += std::uint64_t{header.warps_per_launch} * header.launches.size();
     }
 
-    ProgressBar bar("replay", warps, "rays");
+    const auto stage = progress.begin("replay", warps, "rays");
     const auto run_task = [&](std::size_t task) {
         const auto [s, launch] = tasks[task];
         const traces::Header& header = *sources[s].header;
@@ -54,7 +54,7 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
                 if (new_kernel) r.end_kernel();
                 r.push(shared);
             }
-            bar.add(1, rays);
+            stage.add(1, rays);
         });
         for (std::size_t g = 0; g < gpus.size(); ++g)
             series[s * gpus.size() + g].launches[launch] = replays[g].finish();
@@ -66,18 +66,19 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
 
 }  // namespace
 
-std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus) {
-    return replay_with<cachesim::Series>(
-        sources, gpus, [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
-            return cachesim::Replay(gpu, regions, sample);
-        });
+std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
+                                     Progress& progress) {
+    return replay_with<cachesim::Series>(sources, gpus, progress,
+                                         [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
+                                            std::uint32_t sample) { return cachesim::Replay(gpu, regions, sample); });
 }
 
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>& sources,
-                                                const std::vector<cachesim::Gpu>& gpus,
+                                                const std::vector<cachesim::Gpu>& gpus, Progress& progress,
                                                 const cachesim::Idealised& ideal) {
     return replay_with<cachesim::TimedSeries>(
-        sources, gpus, [&](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
+        sources, gpus, progress,
+        [&](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::TimedReplay(gpu, regions, sample, ideal);
         });
 }

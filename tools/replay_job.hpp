@@ -9,14 +9,16 @@
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/launch_source.hpp"
+#include "tools/progress.hpp"
 
 namespace raycache::tools {
 
-/// One series per source and GPU, sources first. Throws Error as traces::Reader does.
-std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&);
+/// One series per source and GPU, sources first. The stage of the progress is "replay". Throws Error as traces::Reader
+/// does.
+std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Progress&);
 
 /// The same in time.
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
-                                                const cachesim::Idealised& = {});
+                                                Progress&, const cachesim::Idealised& = {});
 
 }  // namespace raycache::tools

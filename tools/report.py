@@ -11,12 +11,12 @@ import html
 import io
 import json
 import math
-import os
 import pathlib
 import sys
-import tempfile
 
 import matplotlib
+
+from files import read_text, whole_file
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
@@ -299,23 +299,9 @@ def page(comparison, picture, command):
     return "\n".join(parts)
 
 
-def write(path, text):
-    """Under the final name only when whole."""
-    folder = path.resolve().parent
-    with tempfile.NamedTemporaryFile("w", encoding="utf-8", dir=folder, suffix=".partial", delete=False) as file:
-        try:
-            file.write(text)
-            file.flush()
-            os.chmod(file.name, 0o644)
-            os.replace(file.name, path)
-        except OSError:
-            os.unlink(file.name)
-            raise
-
-
 def read_report(path):
     """The JSON of the program, of the schema that this reads (docs/json.md)."""
-    report = json.loads(path.read_text("utf-8"))
+    report = json.loads(read_text(path))
     if report.get("schema_version") != SCHEMA:
         raise BadInput(f"schema_version {report.get('schema_version')}, expected {SCHEMA}: made by another version of raycache")
     return report
@@ -332,7 +318,9 @@ def main():
     try:
         comparison = Comparison(read_report(arguments.comparison))
         picture = arguments.picture.read_bytes() if arguments.picture else None
-        write(arguments.output, page(comparison, picture, arguments.command))
+        text = page(comparison, picture, arguments.command)
+        with whole_file(arguments.output) as file:
+            file.write(text.encode())
     except OSError as error:
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: error: {error}")
     except (ValueError, KeyError, TypeError, BadInput) as error:

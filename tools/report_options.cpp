@@ -8,7 +8,6 @@
 #include "tools/console.hpp"
 #include "tools/replay_job.hpp"
 #include "traces/error.hpp"
-#include "traces/output_file.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -19,12 +18,6 @@ cachesim::GroupBy parse_by(const std::string& text) {
     if (text == "ray") return cachesim::GroupBy::ray;
     if (text == "object") return cachesim::GroupBy::object;
     throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
-}
-
-void save_text(const std::string& path, const std::string& text) {
-    traces::OutputFile file(path);
-    file.write(text);
-    file.commit();
 }
 
 /// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
@@ -41,12 +34,14 @@ template <class Report>
 void publish(const Report& report, const JsonSubject& subject, const ReportOptions& o) {
     using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
     const auto json = [&] { return o.json.document(to_json(report), subject); };
+    Deliveries deliveries;
+    deliveries.attempt([&] { print(o.json ? json() : o.csv ? to_csv(report) : to_text(report)); });
     if (!o.save.empty()) {
-        save_text(o.save + ".txt", to_text(report));
-        save_text(o.save + ".json", json());
-        save_text(o.save + ".csv", to_csv(report));
+        deliveries.attempt([&] { write_text(o.save + ".txt", to_text(report)); });
+        deliveries.attempt([&] { write_text(o.save + ".json", json()); });
+        deliveries.attempt([&] { write_text(o.save + ".csv", to_csv(report)); });
     }
-    print(o.json ? json() : o.csv ? to_csv(report) : to_text(report));
+    deliveries.finish();
 }
 
 }  // namespace
@@ -77,6 +72,7 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) con
     check();
     refuse_overwriting(inputs, outputs());
     std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
+    check_outputs(outputs());
     if (timed) gpus.check_timed(loaded);
     for (const cachesim::Gpu& gpu : loaded)
         if (!counters.empty() && gpu.levels.size() != 2)
@@ -102,15 +98,15 @@ FileNames ReportOptions::outputs() const {
 }
 
 void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
-                                       const std::vector<cachesim::Gpu>& loaded) const {
+                                       const std::vector<cachesim::Gpu>& loaded, Progress& progress) const {
     JsonSubject subject{loaded, {}};
     for (std::size_t i = 0; i < sources.size(); ++i)
         subject.traces.push_back(settings_json(*sources[i].header, files.empty() ? "" : files[i]));
     if (timed) {
-        const auto series = replay_timed(sources, loaded);
+        const auto series = replay_timed(sources, loaded, progress);
         return publish(cachesim::make_timed_report(series, baseline_of(series, baseline)), subject, *this);
     }
-    const auto series = replay(sources, loaded);
+    const auto series = replay(sources, loaded, progress);
     const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
     if (counters.empty())
         publish(report, subject, *this);

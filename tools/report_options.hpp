@@ -11,6 +11,7 @@
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 
 namespace raycache::tools {
 
@@ -32,7 +33,7 @@ struct ReportOptions {
     /// Replays all sources on all GPUs, makes the report, prints it in the chosen format, and saves all formats where
     /// asked. `files`: the names of the sources, empty for captures.
     void replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
-                            const std::vector<cachesim::Gpu>&) const;
+                            const std::vector<cachesim::Gpu>&, Progress&) const;
 
 private:
     void check() const;

@@ -8,11 +8,11 @@
 #include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "tools/samples_picture.hpp"
 #include "tools/samples_tables.hpp"
 #include "tools/samples_union.hpp"
 #include "traces/error.hpp"
-#include "traces/output_file.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -48,26 +48,25 @@ std::string subject(const Options& o) {
                        o.copies);
 }
 
-/// K below the hole-free one by half leaves holes; the paper's own K comes from the star discrepancy.
+/// For an N that the star discrepancy is known of. K below the hole-free one by half leaves holes; the paper's own K
+/// comes from the star discrepancy.
 void write_figure2(const Options& o) {
     const SampleUnion coherent = make(o, "coherent", "");
-    const auto from_discrepancy = coherent.k_from_discrepancy();
-    if (!from_discrepancy)
-        throw UsageError(
-            fmt::format("--figure2 with --spp {}; expected at most {}", o.spp, tracer::max_star_discrepancy_points));
-    const double small = coherent.hole_free_k / 2;
+    const double from_discrepancy = coherent.k_from_discrepancy().value(), small = coherent.hole_free_k / 2;
     const SampleUnion narrow = make(o, "micro-jitter", fmt::format("{}", small)),
-                      right = make(o, "micro-jitter", fmt::format("{}", *from_discrepancy)),
+                      right = make(o, "micro-jitter", fmt::format("{}", from_discrepancy)),
                       rotated = make(o, "cranley-patterson", "");
     tracer::write_screen_image(
         o.figure2, draw_samples(subject(o), {{"coherent", &coherent},
                                              {fmt::format("micro-jitter, mu too small, K {:.2f}", small), &narrow},
-                                             {fmt::format("micro-jitter, K {:.2f}", *from_discrepancy), &right},
+                                             {fmt::format("micro-jitter, K {:.2f}", from_discrepancy), &right},
                                              {"cranley-patterson", &rotated}}));
 }
 
 void run(const Options& o) {
     const auto limit = o.threads.apply();
+    Progress progress("samples");
+    const auto stage = progress.begin("points");
     if (!o.table.empty()) {
         if (!o.csv.empty() || !o.picture.empty() || !o.figure2.empty())
             throw UsageError("--table with --csv, --picture or --figure2; expected --table NAME [--json] alone");
@@ -78,20 +77,22 @@ void run(const Options& o) {
     refuse_stdout("--csv", o.csv);
     check_picture_name("--picture", o.picture);
     check_picture_name("--figure2", o.figure2);
+    if (!o.figure2.empty() && o.spp > tracer::max_star_discrepancy_points)
+        throw UsageError(
+            fmt::format("--figure2 with --spp {}; expected at most {}", o.spp, tracer::max_star_discrepancy_points));
+    check_outputs({o.csv, o.picture, o.figure2});
     const SampleUnion samples = make(o, o.strategy, "");
     if (!samples.warning.empty()) warn(samples.warning);
-    if (!o.csv.empty()) {
-        traces::OutputFile file(o.csv);
-        file.write(to_csv(samples));
-        file.commit();
-    }
+    Deliveries deliveries;
+    deliveries.attempt([&] { print(o.json ? o.json.document(to_json(samples)) : to_text(samples)); });
+    if (!o.csv.empty()) deliveries.attempt([&] { write_text(o.csv, to_csv(samples)); });
+    const std::string title = o.strategy + (samples.parameters.empty() ? "" : " ") + samples.parameters;
     if (!o.picture.empty())
-        tracer::write_screen_image(
-            o.picture,
-            draw_samples(subject(o),
-                         {{o.strategy + (samples.parameters.empty() ? "" : " ") + samples.parameters, &samples}}));
-    if (!o.figure2.empty()) write_figure2(o);
-    print(o.json ? o.json.document(to_json(samples)) : to_text(samples));
+        deliveries.attempt([&] {
+            tracer::write_screen_image(o.picture, draw_samples(subject(o), {{title, &samples}}));
+        });
+    if (!o.figure2.empty()) deliveries.attempt([&] { write_figure2(o); });
+    deliveries.finish();
 }
 
 }  // namespace

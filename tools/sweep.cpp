@@ -94,14 +94,16 @@ void run(const Options& o) {
     if (!o.common.baseline.empty() && o.common.baseline != baseline)
         throw UsageError(
             fmt::format("--baseline {}; expected {}, which a sweep is held against", o.common.baseline, baseline));
-    const QualityReport report = o.common.measure(std::move(request), {});
+    Deliveries deliveries;
+    Progress progress("sweep");
+    const QualityReport report = o.common.measure(std::move(request), {}, deliveries, progress);
     const Recommendation advice = recommend(o, report);
-    if (o.common.json)
-        print(o.common.json.document(to_json(report, &advice), report.subject));
-    else if (o.common.csv)
-        print(to_csv(report));
-    else
-        print(to_text(report) + "\nrecommendation: " + advice.text + "\n");
+    deliveries.attempt([&] {
+        print(o.common.json  ? o.common.json.document(to_json(report, &advice), report.subject)
+              : o.common.csv ? to_csv(report)
+                             : to_text(report) + "\nrecommendation: " + advice.text + "\n");
+    });
+    deliveries.finish();
 }
 
 }  // namespace

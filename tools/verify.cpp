@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/costs.hpp"
 #include "tools/json_output.hpp"
 #include "tools/outputs.hpp"
+#include "tools/progress.hpp"
 #include "traces/verify.hpp"
 
 namespace raycache::tools {
@@ -21,6 +24,12 @@ struct Options {
 void run(const Options& o) {
     refuse_overwriting({o.path}, {o.recovered});
     refuse_stdout("--recover", o.recovered);
+    check_outputs({o.recovered});
+    std::error_code unknown;
+    const std::uintmax_t bytes = std::filesystem::file_size(o.path, unknown);
+    Progress progress("verify");
+    if (!unknown) progress.expect("read", Work::prepare, read_cost(bytes));
+    const auto stage = progress.begin("read");
     nlohmann::ordered_json out;
     std::string text;
     if (o.recovered.empty()) {

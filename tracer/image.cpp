@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -186,6 +187,9 @@ ChannelFile read_channels(const std::string& path, const std::vector<std::string
                         "another file",
                         path, found));
     };
+    std::error_code error;
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        fail("a folder, a pipe or a device");
     std::ifstream stream(path, std::ios::binary);
     std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
     if (!stream || bytes.empty()) fail("no file that can be read");

@@ -7,7 +7,8 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "traces/error.hpp"
@@ -17,57 +18,94 @@ namespace {
 
 constexpr std::string_view stdout_name = "-";
 
-[[noreturn]] void fail(const std::string& path, std::uint64_t offset, const char* what, int error) {
-    const char* remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-                             ? "free some space or name a file on another disk"
-                             : "check the folder and its permissions, or name another file";
-    throw Error(fmt::format("{}: offset {}: {}: expected success, found \"{}\"; {}",
-                            path == stdout_name ? "stdout" : path, offset, what, std::strerror(error), remedy));
-}
-
-/// Where the symbolic links of a file's name lead, also if there is no file yet.
-std::string followed(std::string path) {
-    constexpr int most_links = 40;
-    std::error_code error;
-    for (int links = 0; links < most_links; ++links) {
-        const std::filesystem::path to = std::filesystem::read_symlink(path, error);
-        if (error) break;
-        path = (std::filesystem::path(path).parent_path() / to).string();
+const char* remedy_for(int error) {
+    switch (error) {
+        case ENOSPC:
+        case EDQUOT:
+        case EFBIG:
+            return "free some space or name a file on another disk";
+        case EPIPE:
+            return "keep the program that reads it running to the end";
+        case ENOENT:
+        case ENOTDIR:
+            return "make the folder first, or name another file";
+        case ESTALE:
+            return "something removed or replaced the unfinished file; run the command again";
+        default:
+            return "check the folder and its permissions, or name another file";
     }
-    return path;
 }
 
-std::FILE* open_directly(const std::string& path) {
-    const int descriptor =
-        path == stdout_name ? ::dup(STDOUT_FILENO) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    return descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
+[[noreturn]] void fail(const std::string& path, std::uint64_t offset, const std::string& what, int error) {
+    throw Error(fmt::format("{}: offset {}: {}: expected success, found \"{}\"; {}",
+                            path == stdout_name ? "stdout" : path, offset, what, std::strerror(error),
+                            remedy_for(error)));
+}
+
+/// Calls `f`, whose std::system_error becomes an Error.
+template <class F>
+void explained(const std::string& path, std::uint64_t offset, const char* what, const F& f) {
+    try {
+        f();
+    } catch (const std::system_error& e) {
+        fail(path, offset, what, e.code().value());
+    }
+}
+
+int open_directly(const std::string& path) {
+    if (path == stdout_name) return ::dup(STDOUT_FILENO);
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) return open_pipe_for_writing(path);
+    return ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
 }
 
 }  // namespace
 
-std::string OutputFile::partial_name(const std::string& path) {
-    struct stat status {};
-    const bool exists = ::stat(path.c_str(), &status) == 0;
-    if (path == stdout_name || (exists && !S_ISREG(status.st_mode))) return {};
-    return followed(path) + ".partial";
+int open_pipe_for_writing(const std::string& path, std::chrono::milliseconds patience) {
+    constexpr std::chrono::milliseconds pause(20);
+    const auto start = std::chrono::steady_clock::now();
+    // Without O_NONBLOCK, open() waits for a reader for ever and without a word.
+    int descriptor = -1;
+    while ((descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK)) < 0 && errno == ENXIO) {
+        if (std::chrono::steady_clock::now() - start > patience)
+            throw Error(
+                fmt::format("{}: opening the named pipe: expected a program that reads it, found none within {} s; "
+                            "start that first",
+                            path, std::chrono::duration<double>(patience).count()));
+        std::this_thread::sleep_for(pause);
+    }
+    if (descriptor >= 0) ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+    return descriptor;
 }
 
-OutputFile::OutputFile(const std::string& path)
-    : partial_(partial_name(path)), path_(partial_.empty() ? path : followed(path)) {
-    file_ = partial_.empty() ? open_directly(path_) : std::fopen(partial_.c_str(), "wb");
-    if (file_ == nullptr) fail(open_name(), 0, partial_.empty() ? "opening the file" : "creating the file", errno);
+bool OutputFile::is_direct(const std::string& path) {
+    struct stat status {};
+    return path == stdout_name || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode));
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path) {
+    if (is_direct(path)) {
+        const int descriptor = open_directly(path);
+        file_ = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
+        if (file_ == nullptr) fail(path_, 0, "opening the file", errno);
+        return;
+    }
+    path_ = followed_links(path);
+    explained(path_, 0, "creating the file", [&] { partial_ = std::make_unique<PartialFile>(path_); });
+    // A descriptor of its own: fclose() must not end the lock that the partial file's has.
+    const int descriptor = ::fcntl(partial_->descriptor(), F_DUPFD_CLOEXEC, 0);
+    file_ = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
+    if (file_ == nullptr) fail(path_, 0, "creating the file", errno);
 }
 
 OutputFile::~OutputFile() {
-    if (file_ == nullptr) return;
-    std::fclose(file_);
-    if (!partial_.empty()) std::remove(partial_.c_str());
+    if (file_ != nullptr) std::fclose(file_);
 }
 
 void OutputFile::write(std::span<const std::uint8_t> bytes) {
     if (bytes.empty()) return;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
-        fail(open_name(), bytes_, fmt::format("writing {} bytes", bytes.size()).c_str(), errno);
+        fail(path_, bytes_, fmt::format("writing {} bytes", bytes.size()), errno);
     bytes_ += bytes.size();
 }
 
@@ -76,17 +114,10 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::commit() {
-    if (std::fflush(file_) != 0) fail(open_name(), bytes_, "writing the last bytes", errno);
-    if (std::fclose(std::exchange(file_, nullptr)) != 0) {
-        const int error = errno;
-        if (!partial_.empty()) std::remove(partial_.c_str());
-        fail(open_name(), bytes_, "closing the file", error);
-    }
-    if (!partial_.empty() && std::rename(partial_.c_str(), path_.c_str()) != 0) {
-        const int error = errno;
-        std::remove(partial_.c_str());
-        fail(path_, 0, "giving the file its name", error);
-    }
+    if (std::fflush(file_) != 0) fail(path_, bytes_, "writing the last bytes", errno);
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(path_, bytes_, "closing the file", errno);
+    if (partial_) explained(path_, bytes_, "giving the whole file its name", [&] { partial_->publish(); });
+    partial_.reset();
 }
 
 }  // namespace raycache::traces

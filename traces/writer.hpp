@@ -1,4 +1,5 @@
-// Writes a trace file. The name appears only when the file is whole: until finish() the bytes go to "NAME.partial".
+// Writes a trace file. The name appears only when the file is whole: until finish() the bytes go to a partial file
+// (partial_file.hpp).
 #pragma once
 
 #include <cstdint>

@@ -13,6 +13,7 @@
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/presets.hpp"
 #include "traces/error.hpp"
+#include "traces/input_pipe.hpp"
 
 namespace raycache::cachesim {
 
@@ -25,14 +26,19 @@ std::string read_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         throw Error(fmt::format("{}: expected a .toml file that describes a GPU, found a folder", path));
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        throw Error(
-            fmt::format("{}: expected a .toml file that describes a GPU, found none to read ({}); check the path", path,
-                        std::strerror(errno)));
-    std::string text(most_file_bytes + 1, '\0');
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(file.gcount()));
+    std::string text;
+    if (traces::is_pipe(path)) {
+        text = traces::read_pipe(path, most_file_bytes + 1);
+    } else {
+        std::ifstream file(path, std::ios::binary);
+        if (!file)
+            throw Error(
+                fmt::format("{}: expected a .toml file that describes a GPU, found none to read ({}); check the path",
+                            path, std::strerror(errno)));
+        text.resize(most_file_bytes + 1);
+        file.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(file.gcount()));
+    }
     if (text.size() > most_file_bytes)
         throw Error(fmt::format("{}: expected a .toml file of at most {} bytes, found a longer one; check the path",
                                 path, most_file_bytes));

@@ -49,10 +49,6 @@ class Overwriting(ProgramTest):
             self.keeps("t.rct", "export", "t.rct", *SECTORS, "u64", "-o", name)
             self.keeps("t.rct", "verify", name, "--recover", "t.rct")
 
-    def test_not_while_the_output_has_another_name_until_it_is_whole(self):
-        self.capture("t.rct.partial")
-        self.keeps("t.rct.partial", "export", "t.rct.partial", *SECTORS, "u64", "-o", "t.rct")
-
     def test_a_scene_is_kept_with_all_its_files(self):
         self.path("scene.gltf").write_text(GLTF)
         self.path("positions.rct").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))

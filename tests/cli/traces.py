@@ -134,7 +134,11 @@ class Traces(ProgramTest):
         process.send_signal(signal.SIGKILL)
         process.communicate()
         self.assertEqual(process.returncode, -signal.SIGKILL, "it ended before it was killed")
-        self.assertEqual(self.listing(), ["trace.rct.partial"])
+        left, = self.listing()
+        self.assertRegex(left, r"\Atrace\.rct\.\d+-[0-9a-f]{8}\.partial\Z")
+        warned = self.warns("capture", *SCENE, *LAUNCHES, "-o", "trace.rct")
+        self.assertRegex(warned.stderr, f"(?m)^raycache: warning: {left}: .*--recover")
+        self.assertEqual(self.listing(), ["trace.rct", left])
 
 
 if __name__ == "__main__":

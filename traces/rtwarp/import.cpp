@@ -14,6 +14,7 @@
 
 #include "traces/error.hpp"
 #include "traces/format.hpp"
+#include "traces/input_file.hpp"
 #include "traces/writer.hpp"
 
 namespace raycache::traces {
@@ -190,6 +191,7 @@ void align(Region& region, std::vector<WarpTrace>& warps, std::uint8_t number, I
 }  // namespace
 
 bool looks_like_rtwarp(const std::string& path) {
+    const InputFile ordinary(path);  // a pipe cannot be read twice
     std::ifstream file(path, std::ios::binary);
     char start[8] = {};
     file.read(start, sizeof start);
