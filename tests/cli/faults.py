@@ -34,6 +34,9 @@ class Faults(ProgramTest):
         super().setUp()
         self.environment = {**os.environ, "XDG_CACHE_HOME": str(self.path("cache"))}
 
+    def small_trace(self, name):
+        self.succeeds("capture", *SCENE, *SMALL, "--spp", "64", "-o", name)
+
     def writing_commands(self):
         """What writes files, and which. Their inputs are made first."""
         self.succeeds("capture", *SCENE, *SMALL, "-o", "in.rct")
@@ -141,7 +144,7 @@ class Scripts(Faults):
 
 class Streams(Faults):
     def tables(self):
-        self.capture("t.rct", *SMALL)
+        self.small_trace("t.rct")
         return [["info", "t.rct"], ["verify", "t.rct", "--json"], ["replay", "t.rct", *GPU], ["list"], POINTS,
                 ["explain", "t.rct", "t.rct", *GPU], QUALITY, ["--help"], ["--version"], ["replay", "--help"],
                 ["export", "t.rct", *SECTORS, "-o", "-"], ["capture", *SCENE, *SMALL, "-o", "-"]]
@@ -170,7 +173,7 @@ class Streams(Faults):
         self.check("Bad file descriptor|closed", preexec_fn=without(1))
 
     def test_files_are_written_all_the_same(self):
-        self.capture("t.rct", *SMALL)
+        self.small_trace("t.rct")
         with open("/dev/full", "wb") as full:
             self.errors_of(self.run_program("replay", "t.rct", *GPU, "--save", "t", stdout=full))
         self.succeeds("replay", "t.rct", *GPU, "--save", "whole")
@@ -199,7 +202,7 @@ class Folders(Faults):
     LONG = ["--resolution", "4096x4096", "--spp", "4096"]
 
     def long_commands(self, folder):
-        self.capture("in.rct", *SMALL)
+        self.small_trace("in.rct")
         return [["capture", *SCENE, *self.LONG, "--trace-samples", "512", "-o", f"{folder}/t.rct"],
                 ["render", *SCENE, *self.LONG, "-o", f"{folder}/t.png"],
                 ["compare", "--scene", *SCENE, *self.LONG, "--trace-samples", "512", *GPU, "--save", f"{folder}/t"],
@@ -256,7 +259,7 @@ class Pipes(Faults):
         self.assertEqual(self.listing(), before)
 
     def test_a_pipe_that_nobody_reads_is_refused_before_the_work(self):
-        self.capture("in.rct", *SMALL)
+        self.small_trace("in.rct")
         os.mkfifo(self.path("pipe"))
         os.mkfifo(self.path("pipe.png"))
         os.mkfifo(self.path("pipe.csv"))
@@ -265,7 +268,7 @@ class Pipes(Faults):
                       ["compare", "--scene", *SCENE, *Folders.LONG, *GPU, "--save", "pipe"])
 
     def test_a_pipe_that_nobody_writes_is_refused(self):
-        self.capture("in.rct", *SMALL)
+        self.small_trace("in.rct")
         for name in ("pipe", "pipe.glb", "pipe.toml", "pipe.exr", "pipe.traceg"):
             os.mkfifo(self.path(name))
         self.refusals(["info", "pipe"], ["verify", "pipe"], ["replay", "pipe", *GPU], ["replay", "in.rct", "--gpu", "pipe.toml"],
@@ -274,7 +277,7 @@ class Pipes(Faults):
                       [*QUALITY, "--reference", "pipe.exr"])
 
     def test_a_gpu_file_may_come_through_a_pipe(self):
-        self.capture("in.rct", *SMALL)
+        self.small_trace("in.rct")
         self.path("tiny.toml").write_text(GPU_FILE)
         os.mkfifo(self.path("pipe.toml"))
 
