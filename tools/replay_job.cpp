@@ -4,12 +4,24 @@
 
 #include <algorithm>
 #include <memory>
+#include <type_traits>
 
 #include "cachesim/replay/replay.hpp"
 #include "tools/console.hpp"
 
 namespace raycache::tools {
 namespace {
+
+/// The share of a kernel's warps that a GPU holds at once: a timed replay has its work with them only when no more
+/// come.
+template <class Series>
+double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Header& header) {
+    if constexpr (!std::is_same_v<Series, cachesim::TimedSeries>) return 0;
+    double share = 0;
+    for (const cachesim::Gpu& gpu : gpus)
+        share += std::min(1.0, double{gpu.sms} * gpu.warps_per_sm / header.warps_per_kernel());
+    return share / static_cast<double>(gpus.size());
+}
 
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
@@ -39,10 +51,13 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
         warps += std::uint64_t{header.warps_per_launch} * header.launches.size();
     }
 
-    const auto stage = progress.begin("replay", warps, "rays");
+    constexpr std::uint64_t parts = 100;  // of a warp's work
+    const auto stage = progress.begin("replay", parts * warps, "rays");
     const auto run_task = [&](std::size_t task) {
         const auto [s, launch] = tasks[task];
         const traces::Header& header = *sources[s].header;
+        const auto last_parts =
+            static_cast<std::uint64_t>(resident_share<Series>(gpus, header) * static_cast<double>(parts));
         std::vector<decltype(make_replay(gpus[0], header.regions, 0u))> replays;
         for (const cachesim::Gpu& gpu : gpus)
             replays.push_back(make_replay(gpu, header.regions, header.launches[launch]));
@@ -54,10 +69,11 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
                 if (new_kernel) r.end_kernel();
                 r.push(shared);
             }
-            stage.add(1, rays);
+            stage.add(parts - last_parts, rays);
         });
         for (std::size_t g = 0; g < gpus.size(); ++g)
             series[s * gpus.size() + g].launches[launch] = replays[g].finish();
+        stage.add(last_parts * header.warps_per_launch, 0);
     };
     // Each launch begins with cold caches, so launches are independent: one thread each.
     tbb::parallel_for(std::size_t{0}, tasks.size(), run_task, tbb::simple_partitioner());

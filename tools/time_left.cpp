@@ -14,6 +14,7 @@ struct Pace {
 
     void add(const StageState& stage) {
         expected += stage.expected;
+        if (stage.done == 0) return;  // nothing to see yet
         work_done += stage.expected * stage.done;
         seconds += stage.seconds;
     }
@@ -24,10 +25,10 @@ struct Pace {
     }
 };
 
-/// Preparing does not say how far it is. Where it has taken longer than expected, it takes half as long again.
-double preparing_left(const StageState& stage) {
-    if (stage.done >= 1) return 0;
-    return stage.running ? std::max(stage.expected - stage.seconds, stage.seconds / 2) : stage.expected;
+double left_of(const StageState& stage, double pace) {
+    const double left = stage.expected * (1 - stage.done) * pace;
+    // One that does not say how far it is takes half as long again where it has taken longer than expected.
+    return stage.running && stage.done == 0 ? std::max(left - stage.seconds, stage.seconds / 2) : left;
 }
 
 }  // namespace
@@ -43,9 +44,8 @@ double time_left(std::span<const StageState> stages) {
     const double usual = all.ratio(1);
     double left = 0;
     for (const StageState& stage : stages)
-        left += stage.work == Work::prepare
-                    ? preparing_left(stage)
-                    : stage.expected * (1 - stage.done) * paces[static_cast<std::size_t>(stage.work)].ratio(usual);
+        left +=
+            left_of(stage, stage.work == Work::prepare ? 1 : paces[static_cast<std::size_t>(stage.work)].ratio(usual));
     return std::max(0.0, left);
 }
 

@@ -94,6 +94,12 @@ TEST_CASE("a scene that takes long to load is said to take half as long again") 
     CHECK(time_left(states_at(stages, 62.5)) == Approx(2.5));  // and its pace says nothing of the tracing
 }
 
+TEST_CASE("work that shows nothing for long is believed to take as long as expected, then half as long again") {
+    CHECK(time_left(std::vector<StageState>{{Work::timed_replay, 10, 0, 4, true}}) == Approx(6));
+    CHECK(time_left(std::vector<StageState>{{Work::timed_replay, 10, 0, 30, true}}) == Approx(15));
+    CHECK(time_left(std::vector<StageState>{{Work::timed_replay, 10, 0.5, 30, true}}) == Approx(30));
+}
+
 TEST_CASE("a stage that turns out not to be needed takes no time") {
     std::vector<StageState> states{{Work::render, 0, 0, 0, false}, {Work::render, 10, 0, 0, false}};
     CHECK(time_left(states) == Approx(10));
