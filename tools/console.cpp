@@ -61,6 +61,7 @@ void say_written(const std::string& path, std::uint64_t bytes) {
 }
 
 void print(const std::string& text) {
+    set_status({});  // both may be the same terminal
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
         throw Error(fmt::format("cannot write the result to stdout: {}", std::strerror(errno)));
 }
