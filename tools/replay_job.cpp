@@ -19,7 +19,7 @@ double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Head
     if constexpr (!std::is_same_v<Series, cachesim::TimedSeries>) return 0;
     double share = 0;
     for (const cachesim::Gpu& gpu : gpus)
-        share += std::min(1.0, double{gpu.sms} * gpu.warps_per_sm / header.warps_per_kernel());
+        share += std::min(1.0, static_cast<double>(gpu.sms) * gpu.warps_per_sm / header.warps_per_kernel());
     return share / static_cast<double>(gpus.size());
 }
 
