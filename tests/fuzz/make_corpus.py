@@ -104,11 +104,19 @@ def rtwarp():
 
 
 OPTIONS = {
-    "micro-jitter": "courtyard --strategy micro-jitter --spp 64 --k 2.5 --s 2 --seed 7 --resolution 64x48",
-    "full": "a.glb --eye 1,2,3 --look-at 0,0,0 --fov 40 --sky on --k discrepancy --s full --sequence halton",
-    "gpu": "courtyard --gpu h100,rtx-3070 --set l1.ways=64 --warps-per-sm 16 --set timing.l1_port='banks'",
-    "wavefront": "courtyard --execution wavefront --order morton --thread-map samples --interleave 4 --mu cycles",
-    "paths": "courtyard --bounces 5 --bounces-diffuse 2 --bounces-transmission 3 --lights mis --russian-roulette",
+    "capture": "capture courtyard --strategy micro-jitter --spp 64 --k 2.5 --s 2 --seed 7 --resolution 64x48 -o a.rct",
+    "view": "render a.glb --eye 1,2,3 --look-at 0,0,0 --fov 40 --sky on --spp 16 --sequence halton -o a.png",
+    "compare": "compare courtyard --strategy coherent,random --spp 64,256 --gpu h100,rtx-3070 --set l1.ways=64 --timed",
+    "traces": "compare a.rct b.rct --gpu gtx-980-ti --warps-per-sm 16 --by bounce --baseline random --json",
+    "wavefront": "capture courtyard --execution wavefront --order morton --interleave 4 --mu cycles --output a.rct",
+    "paths": "capture courtyard --bounces 5 --bounces-diffuse 2 --bounces-transmission 3 --lights mis -o a.rct",
+    "quality": "quality courtyard --spp 16 --repeats 2 --reference-spp 64 --strategy coherent,owen --csv",
+    "sweep": "sweep courtyard --mu 0,0.25,1 --gpu v100 --max-rmse 1.1 --max-r8 1.5",
+    "explain": "explain a.rct b.rct --gpu gtx-980-ti --by depth --heatmap why.exr",
+    "export": "export a.rct --gpu v100 --format csv --level l2 --launch 0 -o a.csv",
+    "samples": "samples --k 1 --picture holes.png --strategy micro-jitter",
+    "list": "list gpus --details --json",
+    "help": "capture --help",
 }
 
 
