@@ -215,7 +215,8 @@ class Folders(Faults):
                 ["verify", "in.rct", "--recover", f"{folder}/t.rct"],
                 ["samples", "--csv", f"{folder}/t.csv"]]
 
-    @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"), "setpriv is absent, and root may write everywhere; apt-get install util-linux")
+    @unittest.skipIf(os.geteuid() == 0 and not shutil.which("setpriv"),
+                     "setpriv is absent, and root may write everywhere; apt-get install util-linux")
     def test_a_read_only_folder_is_refused_before_the_work(self):
         commands = self.long_commands("closed")
         self.path("closed").mkdir(mode=0o555)
