@@ -8,16 +8,15 @@
 #include <mutex>
 
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::tools {
 namespace {
 
 /// Messages carry names from files: no line break and no control character may reach the terminal.
-std::string one_line(std::string text) {
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    return text;
+std::string message_line(std::string_view text) {
+    while (text.ends_with('\n')) text.remove_suffix(1);
+    return printable_line(text);
 }
 
 /// "1234 bytes", "1.2 MiB"
@@ -49,19 +48,20 @@ constexpr const char* wipe = "\r\x1b[K";
 
 std::string program_name() { return "raycache " RAYCACHE_VERSION; }
 
-void warn(const std::string& message) { say(fmt::format("raycache: warning: {}\n", one_line(message))); }
+void warn(const std::string& message) { say(fmt::format("raycache: warning: {}\n", message_line(message))); }
 
 int fail(const std::string& message, int exit_code) {
-    say(fmt::format("raycache: error: {}\n", one_line(message)));
+    say(fmt::format("raycache: error: {}\n", message_line(message)));
     return exit_code;
 }
 
 void say_written(const std::string& path, std::uint64_t bytes) {
-    say(fmt::format("raycache: wrote {}, {}\n", one_line(path), short_size(bytes)));
+    say(fmt::format("raycache: wrote {}, {}\n", message_line(path), short_size(bytes)));
 }
 
-void print(const std::string& text) {
+void print(const std::string& report) {
     set_status({});  // both may be the same terminal
+    const std::string text = report.starts_with('{') ? printable_json(report) : printable_text(report);
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
         throw Error(fmt::format("cannot write the result to stdout: {}", std::strerror(errno)));
 }

@@ -18,7 +18,9 @@ int fail(const std::string& message, int exit_code);
 /// Prints "raycache: wrote FILE, SIZE".
 void say_written(const std::string& path, std::uint64_t bytes);
 
-/// Prints to stdout. Throws Error where that fails (a full disk behind a redirection).
+/// Prints a report to stdout: text, or JSON, which begins with a brace. Control characters of names in it, all but line
+/// feeds, and what is no UTF-8 are replaced, in JSON escaped. Throws Error where that fails (a full disk behind a
+/// redirection).
 void print(const std::string& text);
 
 /// To stderr as it is, as far as that goes: what it cannot take must not end the work.

@@ -15,6 +15,7 @@
 #include "tools/console.hpp"
 #include "tools/heat_map.hpp"
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::tools {
 
@@ -70,7 +71,7 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
     add(fmt::format("N={}", a.spp), fmt::format("N={}", b.spp));
     add(a.layout, b.layout);
     if (names[0].empty() || names[1].empty()) return {"base", "other"};
-    return names;
+    return {printable_line(names[0]), printable_line(names[1])};
 }
 
 /// The warps that are handed to all replays of a launch before the next are read.
@@ -91,7 +92,7 @@ Explained explain(const ExplainRequest& request, Progress& progress) {
     const Header& first = *request.sources[0]->header;
     Explained done;
     cachesim::Explanation& explanation = done.explanation;
-    explanation.scene = first.provenance.scene;
+    explanation.scene = printable_line(first.provenance.scene);
     explanation.gpu = gpu.name;
     explanation.spp = first.provenance.spp;
     explanation.sector_bytes = gpu.l1().sector_bytes;

@@ -9,6 +9,7 @@
 #include "tracer/image.hpp"
 #include "tracer/simt/thread_map.hpp"
 #include "traces/error.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tools {
 
@@ -39,6 +40,9 @@ cachesim::LanePixels lane_pixels(const traces::Header& header, const std::string
                         "{} pixels, {} warps; leave out --heatmap",
                         name, p.thread_map, p.width, p.height, header.warps_per_launch));
     cachesim::LanePixels pixels{p.width, p.height, {}};
+    const std::uint64_t costs = std::uint64_t{p.width} * p.height * sizeof(cachesim::PixelCost);
+    MemoryBudget().check(std::uint64_t{grid->warps()} * traces::warp_lanes * sizeof(std::uint32_t) + 2 * costs, name,
+                         "a heat map of its pixels");  // costs: of a launch, and of all
     pixels.of_lane.reserve(std::size_t{grid->warps()} * traces::warp_lanes);
     for (std::uint32_t warp = 0; warp < grid->warps(); ++warp)
         for (const tracer::LaneJob& job : grid->jobs(warp, 0).lane)

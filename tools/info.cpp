@@ -8,6 +8,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/json_output.hpp"
+#include "traces/printable.hpp"
 #include "traces/reader.hpp"
 
 #include <CLI/CLI.hpp>
@@ -54,7 +55,7 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
     const auto line = [&](const char* name, const std::string& value) {
         constexpr std::size_t title = 18;
         if (!value.empty())
-            out += cachesim::break_lines(fmt::format("{:<{}}{}\n", name, title, value), cachesim::text_width, title);
+            out += cachesim::break_lines(fmt::format("{:<{}}{}\n", name, title, printable_line(value)), cachesim::text_width, title);
     };
     const auto count = [&](const char* name, std::uint64_t value) { line(name, fmt::format("{}", value)); };
     line("program", p.program);

@@ -5,10 +5,12 @@
 #include <exception>
 #include <new>
 #include <sstream>
+#include <stdexcept>
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/interruption.hpp"
+#include "tools/memory_limit.hpp"
 #include "traces/error.hpp"
 #include "traces/partial_file.hpp"
 
@@ -71,6 +73,7 @@ int main(int argc, char** argv) {
     tools::add_samples(app);
     tools::add_list(app);
     tools::add_completion(app);
+    tools::add_memory_limit(app);
     check_counts(app);
     try {
         app.parse(argc, argv);
@@ -81,7 +84,9 @@ int main(int argc, char** argv) {
     } catch (const UsageError& e) {
         return tools::fail(e.what(), 2);
     } catch (const std::bad_alloc&) {
-        return tools::fail("out of memory; try a smaller scene, resolution or --detail", 1);
+        return tools::fail("out of memory; try a smaller input, resolution or --detail", 1);
+    } catch (const std::length_error&) {
+        return tools::fail("a size beyond any memory; try a smaller input, resolution or --detail", 1);
     } catch (const std::exception& e) {
         return tools::fail(e.what(), 1);
     }

@@ -84,7 +84,7 @@ std::string to_json(const QualityReport& report, const Recommendation* recommend
     }
     for (const QualityRow& row : report.rows) json["rows"].push_back(row_json(row, report.rows));
     json["notes"] = report.notes;
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string to_csv(const QualityReport& report) {

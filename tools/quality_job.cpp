@@ -16,6 +16,7 @@
 #include "tracer/quality/reference_file.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -188,6 +189,11 @@ void check(const QualityRequest& request) {
 
 std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, const tracer::Reference& reference,
                                         const QualityRequest& request, Progress& progress) {
+    // A picture of each seed, one of each case, perhaps another at equal time.
+    const std::uint64_t pictures = request.repeats + (request.equal_time ? 2 : 1) * request.cases.size();
+    const auto& mean = reference.mean;
+    MemoryBudget().check(pictures * mean.pixels.size() * sizeof(tracer::Vec3),
+                         fmt::format("{} x {} pixels", mean.width, mean.height), fmt::format("{} pictures", pictures));
     std::vector<QualityRow> rows;
     for (const auto& c : request.cases) {
         QualityRow& row = rows.emplace_back();
@@ -223,7 +229,7 @@ tracer::Reference find_reference(const tracer::PreparedScene& scene, const trace
     if (file.empty() && !path.empty()) warn_of_unfinished(path);
     if (!path.empty() && std::filesystem::exists(path, error)) {
         const auto read = [&] {
-            tracer::Reference reference = tracer::read_reference(path, key);
+            tracer::Reference reference = tracer::read_reference(path, key, {settings.width, settings.height});
             progress.expect("reference", Work::render, 0);
             advise_kept(path);
             return reference;

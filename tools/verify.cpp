@@ -11,6 +11,7 @@
 #include "tools/json_output.hpp"
 #include "tools/outputs.hpp"
 #include "tools/progress.hpp"
+#include "traces/printable.hpp"
 #include "traces/verify.hpp"
 
 namespace raycache::tools {
@@ -39,15 +40,15 @@ void run(const Options& o) {
                {"records", r.records},
                {"lane_accesses", r.lane_accesses},
                {"rays", r.rays}};
-        text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n", o.path, r.blocks,
-                           r.warps, r.records, r.lane_accesses, r.rays);
+        text = fmt::format("{}: whole: {} blocks, {} warps, {} records, {} lane accesses, {} rays\n",
+                           printable_line(o.path), r.blocks, r.warps, r.records, r.lane_accesses, r.rays);
     } else {
         const traces::RecoverResult r = traces::recover(o.path, o.recovered);
         out = {{"launches_kept", r.launches_kept},
                {"launches_lost", r.launches_lost},
                {"blocks_kept", r.blocks_kept},
                {"blocks_lost", r.blocks_lost}};
-        text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", o.recovered, r.launches_kept,
+        text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", printable_line(o.recovered), r.launches_kept,
                            r.launches_kept + r.launches_lost, r.blocks_kept);
     }
     print(o.json ? o.json.document(json_text(out)) : text);

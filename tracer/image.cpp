@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -17,6 +14,7 @@
 #include "tracer/tone_map.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
+#include "traces/regular_file.hpp"
 
 namespace raycache::tracer {
 
@@ -106,8 +104,13 @@ void write_encoded(const std::string& path, ImageFormat format, const ImageLayou
 
 ImageLayout layout_of(std::uint32_t width, std::uint32_t height, std::size_t channels, bool floats) {
     // No time of day: the same picture would give other bytes.
-    return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), floats, {},
-            {{"DateTime", ""}}};
+    return {static_cast<int>(width),
+            static_cast<int>(height),
+            static_cast<int>(channels),
+            floats,
+            {},
+            {{"DateTime", ""}},
+            true};
 }
 
 }  // namespace
@@ -180,39 +183,40 @@ void write_channels(const std::string& path, std::uint32_t width, std::uint32_t 
     write_encoded(path, ImageFormat::exr, layout, interleaved.data());
 }
 
-ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes) {
+ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes,
+                          const std::function<void(const ChannelFile&)>& check) {
     const auto fail = [&](const std::string& found) {
         throw Error(
             fmt::format("{}: expected a whole OpenEXR image of 32-bit floats, found {}; remove it or name "
                         "another file",
                         path, found));
     };
-    std::error_code error;
-    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-        fail("a folder, a pipe or a device");
-    std::ifstream stream(path, std::ios::binary);
-    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream || bytes.empty()) fail("no file that can be read");
+    const std::vector<std::uint8_t> bytes = read_regular_file(path, "OpenEXR image");
+    if (bytes.empty()) fail("an empty file");
     if (!starts_with(bytes, "\x76\x2f\x31\x01")) fail("something else");
     ImageLayout layout;
     for (const std::string& name : attributes) layout.attributes.emplace_back(name, "");
-    const auto check = [&](const std::string& problem) {
+    const auto decoded = [&](const std::string& problem) {
         if (!problem.empty()) fail("a damaged one (" + first_line(problem) + ")");
     };
-    check(image_codec().read_layout(bytes, ImageFormat::exr, layout));
-    if (layout.width < 1 || layout.height < 1 || layout.width > max_side || layout.height > max_side ||
-        layout.channels < 1 || layout.channels > 64 || !layout.floats)
-        fail("another kind of image");
+    decoded(image_codec().read_layout(bytes, ImageFormat::exr, layout));
+    if (layout.width < 1 || layout.height < 1 || layout.width > max_side || layout.height > max_side)
+        fail(fmt::format("{} x {} pixels", layout.width, layout.height));
+    if (layout.channels < 1 || layout.channels > 64) fail(fmt::format("{} channels", layout.channels));
+    if (!layout.floats || !layout.flat) fail("channels of another type");
     ChannelFile file{static_cast<std::uint32_t>(layout.width), static_cast<std::uint32_t>(layout.height), {}, {}};
     const std::size_t pixels = std::size_t{file.width} * file.height, count = static_cast<std::size_t>(layout.channels);
-    std::vector<float> interleaved(pixels * count);
-    check(image_codec().read_texels(bytes, ImageFormat::exr, layout.channels, true, interleaved.data(),
-                                    count * sizeof(float)));
-    for (std::size_t c = 0; c < count; ++c) {
-        Channel& channel = file.channels.emplace_back(Channel{layout.channel_names[c], std::vector<float>(pixels)});
-        for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = interleaved[i * count + c];
-    }
+    for (const std::string& name : layout.channel_names) file.channels.push_back({name, {}});
+    if (file.channels.size() != count) fail("channels without names");
     file.attributes = layout.attributes;
+    if (check) check(file);
+    std::vector<float> interleaved(pixels * count);
+    decoded(image_codec().read_texels(bytes, ImageFormat::exr, layout.channels, true, interleaved.data(),
+                                      count * sizeof(float)));
+    for (std::size_t c = 0; c < count; ++c) {
+        file.channels[c].values.resize(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) file.channels[c].values[i] = interleaved[i * count + c];
+    }
     return file;
 }
 

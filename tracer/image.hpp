@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -63,9 +64,12 @@ struct ChannelFile {
     std::vector<Channel> channels;
     TextAttributes attributes;
 };
-/// Reads an .exr of floats with the attributes of these names; one that the file lacks is empty. Throws Error where the
-/// file is missing, damaged or something else.
-ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes);
+/// Reads an .exr of floats with the attributes of these names; one that the file lacks is empty. `check`, if any, gets
+/// the file as its header describes it, channels without values, and throws where that is not wanted: before anything
+/// of the header's size is allocated. Throws Error where the file is missing, damaged or something else, also one whose
+/// channels are not all 32-bit floats of one flat picture.
+ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes,
+                          const std::function<void(const ChannelFile&)>& check = {});
 
 /// Throws UsageError unless write_image() knows the extension of `path`, Error if nothing can be written at all.
 void check_image_name(const std::string& path);

@@ -18,6 +18,7 @@ struct ImageLayout {
     bool floats = false;                                          ///< 32-bit floats; else 8-bit
     std::vector<std::string> channel_names;                       ///< one per channel, or none: the format's own
     std::vector<std::pair<std::string, std::string>> attributes;  ///< name, text
+    bool flat = true;  ///< one plane, its channels alike: neither deep nor 3D
 };
 
 /// Every function returns what is wrong, in OpenImageIO's words, or nothing. Rows go top to bottom, channels of a pixel

@@ -24,11 +24,17 @@ public:
     /// Built when first asked for, as embree() is: a capture needs the one, a render the other. May be called by
     /// several threads.
     const Bvh2& bvh() const {
-        std::call_once(bvh_once_, [this] { bvh_.emplace(make_bvh2(build_bvh(scene_, settings_), scene_)); });
+        std::call_once(bvh_once_, [this] {
+            scene_.charge(scene_.triangle_count() * bvh_bytes, "BVH of its triangles");
+            bvh_.emplace(make_bvh2(build_bvh(scene_, settings_), scene_));
+        });
         return *bvh_;
     }
     const EmbreeScene& embree() const {
-        std::call_once(embree_once_, [this] { embree_.emplace(scene_, texels_); });
+        std::call_once(embree_once_, [this] {
+            scene_.charge(scene_.triangle_count() * embree_bytes, "Embree's BVH of its triangles");
+            embree_.emplace(scene_, texels_);
+        });
         return *embree_;
     }
     const Lights& lights() const { return lights_; }
@@ -36,6 +42,9 @@ public:
     const Camera& camera() const { return scene_.cameras.front(); }
 
 private:
+    /// For each triangle, while the tree is built.
+    static constexpr std::uint64_t bvh_bytes = 240, embree_bytes = 200;
+
     static Scene with_offset_scale(Scene scene) {
         scene.offset_scale = Scene::offset_scale_of(scene.bounds());
         return scene;

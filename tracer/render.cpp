@@ -1,5 +1,6 @@
 #include "tracer/render.hpp"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -8,6 +9,7 @@
 
 #include "tracer/paths/embree_traversal.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
 namespace {
@@ -35,6 +37,9 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
 
     scene.embree();  // built here, not by whichever worker comes first
+    const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+    MemoryBudget().check(pixels * sizeof(Vec3), fmt::format("{} x {} pixels", settings.width, settings.height),
+                         "the picture");
     Image image{settings.width, settings.height, std::vector<Vec3>(std::size_t{settings.width} * settings.height)};
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
         [&] { return std::make_unique<Worker>(scene, camera, strategy, settings.paths); });

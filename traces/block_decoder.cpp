@@ -16,7 +16,8 @@ namespace {
 /// Undoes Encoder. Kept per thread for its memory.
 class Decoder {
 public:
-    BlockHead decode(const Header&, std::span<const std::uint8_t> block, const Origin&, std::vector<WarpTrace>& out);
+    BlockHead decode(const Header&, std::span<const std::uint8_t> block, const Origin&, const MemoryBudget&,
+                     std::vector<WarpTrace>& out);
 
 private:
     void decode_warp(const Header&, Schedule&, WarpTrace&);
@@ -230,10 +231,19 @@ void Decoder::decode_warp(const Header& header, Schedule& schedule, WarpTrace& w
     if (schedule.busy() != 0) fault("end of the warp", "every lane finished", "a lane that waits");
 }
 
+/// Bytes that decoding the block takes, its warps included.
+std::uint64_t memory_of(const BlockHead& head) {
+    std::uint64_t bytes = head.records * sizeof(Record) + head.lane_accesses * sizeof(std::uint32_t) +
+                          std::uint64_t{head.warps} * sizeof(WarpTrace);
+    for (const auto& size : head.sizes) bytes += size.raw;
+    return bytes;
+}
+
 BlockHead Decoder::decode(const Header& header, std::span<const std::uint8_t> block, const Origin& origin,
-                          std::vector<WarpTrace>& out) {
+                          const MemoryBudget& budget, std::vector<WarpTrace>& out) {
     const BlockHead head = parse_block_head(block, origin);
     check_sealed(block, origin, "block", salvage);
+    budget.check(memory_of(head), origin.path, "records of a block");
     origin_ = origin;
     const std::uint8_t* stored = block.data() + format::block_head_bytes;
     for (unsigned s = 0; s < format::streams; ++s) {
@@ -270,9 +280,9 @@ BlockHead Decoder::decode(const Header& header, std::span<const std::uint8_t> bl
 }  // namespace
 
 BlockHead decode_block(const Header& header, std::span<const std::uint8_t> block, const Origin& origin,
-                       std::vector<WarpTrace>& out) {
+                       const MemoryBudget& budget, std::vector<WarpTrace>& out) {
     thread_local const auto decoder = std::make_unique<Decoder>();
-    return decoder->decode(header, block, origin, out);
+    return decoder->decode(header, block, origin, budget, out);
 }
 
 }  // namespace raycache::traces

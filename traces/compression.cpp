@@ -46,6 +46,13 @@ ZSTD_DCtx* decompressor() {
     return context.get();
 }
 
+void check_content_size(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin& origin) {
+    const unsigned long long content = ZSTD_getFrameContentSize(stored.data(), stored.size());
+    if (content != size)
+        refuse(origin, "zstd frame", fmt::format("{} bytes of content", size),
+               content >= ZSTD_CONTENTSIZE_ERROR ? "no readable size" : fmt::format("{} bytes", content));
+}
+
 }  // namespace
 
 std::size_t compress(std::span<const std::uint8_t> raw, Effort effort, Bytes& out) {
@@ -61,14 +68,44 @@ std::size_t compress(std::span<const std::uint8_t> raw, Effort effort, Bytes& ou
 
 void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin& origin) {
     if (raw.empty() && stored.empty()) return;
-    const unsigned long long content = ZSTD_getFrameContentSize(stored.data(), stored.size());
-    if (content != raw.size())
-        refuse(origin, "zstd frame", fmt::format("{} bytes of content", raw.size()),
-               content >= ZSTD_CONTENTSIZE_ERROR ? "no readable size" : fmt::format("{} bytes", content));
+    check_content_size(stored, raw.size(), origin);
     const std::size_t size = ZSTD_decompressDCtx(decompressor(), raw.data(), raw.size(), stored.data(), stored.size());
     if (ZSTD_isError(size)) refuse(origin, "zstd frame", "a whole frame", ZSTD_getErrorName(size));
     if (size != raw.size())
         refuse(origin, "zstd frame", fmt::format("{} bytes of content", raw.size()), fmt::format("{} bytes", size));
+}
+
+std::uint64_t pieces_memory(std::span<const std::uint8_t> stored) {
+    if (stored.empty()) return 0;
+    const std::size_t bytes = ZSTD_estimateDStreamSize_fromFrame(stored.data(), stored.size());
+    return ZSTD_isError(bytes) ? 0 : bytes;  // not readable: refused when it is read
+}
+
+void decompress_pieces(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin& origin,
+                       const std::function<void(std::span<const std::uint8_t>)>& use) {
+    if (size == 0 && stored.empty()) return;
+    check_content_size(stored, size, origin);
+    ZSTD_DCtx_reset(decompressor(), ZSTD_reset_session_only);
+    // pieces_memory() bounds the window, which is as large as the content of a frame in a single segment.
+    ZSTD_DCtx_setParameter(decompressor(), ZSTD_d_windowLogMax, ZSTD_WINDOWLOG_MAX);
+    Bytes piece(ZSTD_DStreamOutSize());
+    ZSTD_inBuffer in{stored.data(), stored.size(), 0};
+    std::uint64_t done = 0;
+    for (std::size_t left = 1; left != 0;) {
+        ZSTD_outBuffer out{piece.data(), piece.size(), 0};
+        const std::size_t before = in.pos;
+        left = ZSTD_decompressStream(decompressor(), &out, &in);
+        if (ZSTD_isError(left)) refuse(origin, "zstd frame", "a whole frame", ZSTD_getErrorName(left));
+        if (left != 0 && out.pos == 0 && in.pos == before)
+            refuse(origin, "zstd frame", "a whole frame", "the end of the stored bytes");
+        done += out.pos;
+        if (done > size) break;
+        use(std::span(piece).first(out.pos));
+    }
+    if (done != size)
+        refuse(origin, "zstd frame", fmt::format("{} bytes of content", size), fmt::format("{} bytes", done));
+    if (in.pos != in.size)
+        refuse(origin, "zstd frame", fmt::format("{} bytes", in.pos), fmt::format("{} bytes", in.size));
 }
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "traces/bytes.hpp"
@@ -21,6 +22,13 @@ std::size_t compress(std::span<const std::uint8_t> raw, Effort, Bytes& out);
 
 /// Fills `raw`, whose size the caller has bounded, from one zstd frame; refuses any other content size.
 void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin&);
+
+/// Bytes of memory that decompress_pieces() needs for this frame.
+std::uint64_t pieces_memory(std::span<const std::uint8_t> stored);
+
+/// Hands the content of one zstd frame to `use` in pieces, from front to back; refuses any other content size.
+void decompress_pieces(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin&,
+                       const std::function<void(std::span<const std::uint8_t>)>& use);
 
 std::uint64_t checksum(std::span<const std::uint8_t>);
 

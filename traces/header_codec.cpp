@@ -148,7 +148,7 @@ std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t fi
     return size;
 }
 
-Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
+Header decode_header(std::span<const std::uint8_t> head, const Origin& origin, MemoryBudget& budget) {
     check_sealed(head, origin, "head", recapture);
     const std::uint8_t* p = head.data();
     const auto version = load<std::uint32_t>(p + 8), regions = load<std::uint32_t>(p + 24),
@@ -186,6 +186,9 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
         bound(origin + at + 2, fmt::format("link prediction of region {}", i), entry[2], 0, link_predictions - 1);
         if (entry[3] != 0) refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
     }
+    std::uint64_t link_bytes = 0;
+    for (const Region& region : header.regions) link_bytes += sizeof(no_link) * region.degree * region.count;
+    budget.charge(link_bytes, origin.path, "links of its regions");
     std::uint64_t links = provenance + text;
     for (unsigned i = 0; i < regions; ++i) {
         const std::uint64_t at = table + format::region_bytes * i;
@@ -195,6 +198,7 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin) {
         if (checksum(stored) != load<std::uint64_t>(p + at + 32))
             refuse(origin + links, fmt::format("checksum of the links of region {}", i),
                    hex64(load<std::uint64_t>(p + at + 32)), hex64(checksum(stored)), recapture);
+        const MemoryHold window(budget, pieces_memory(stored), origin.path, "decompressing the links of its regions");
         decode_links(header.regions, i, static_cast<LinkPrediction>(p[at + 2]), stored, origin + links);
         links += bytes;
     }

@@ -7,6 +7,7 @@
 #include "traces/bytes.hpp"
 #include "traces/fault.hpp"
 #include "traces/header.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::traces {
 
@@ -17,7 +18,7 @@ Bytes encode_header(const Header&);
 /// `file` is the front of the file, at least format::fixed_header_bytes if the file has that many.
 std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t file_bytes, const Origin&);
 
-/// Decodes a whole head (as long as header_bytes says).
-Header decode_header(std::span<const std::uint8_t> head, const Origin&);
+/// Decodes a whole head (as long as header_bytes says). The budget is charged for the link tables.
+Header decode_header(std::span<const std::uint8_t> head, const Origin&, MemoryBudget&);
 
 }  // namespace raycache::traces

@@ -1,5 +1,6 @@
 #include "traces/link_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -68,15 +69,22 @@ void decode_links(std::span<Region> regions, unsigned self, LinkPrediction predi
                   std::span<const std::uint8_t> stored, const Origin& origin) {
     Region& region = regions[self];
     const std::size_t count = std::size_t{region.degree} * region.count;
-    Bytes planes(count * 4);
-    decompress(stored, planes, origin);
-    region.links.resize(count);
+    region.links.assign(count, 0);
+    std::size_t at = 0;  // all lowest bytes come first, then all second ones …
+    unsigned shift = 0;
+    decompress_pieces(stored, std::uint64_t{count} * 4, origin, [&](std::span<const std::uint8_t> piece) {
+        while (!piece.empty()) {
+            const std::size_t run = std::min(piece.size(), count - at);
+            for (std::size_t i = 0; i < run; ++i) region.links[at + i] |= std::uint32_t{piece[i]} << shift;
+            piece = piece.subspan(run);
+            at += run;
+            if (at == count) at = 0, shift += 8;
+        }
+    });
     LinkCoder coder(prediction, self);
     for (std::size_t i = 0; i < count; ++i) {
         const auto element = static_cast<std::uint32_t>(i / region.degree);
-        std::uint32_t code = 0;
-        for (unsigned k = 0; k < 4; ++k) code |= std::uint32_t{planes[k * count + i]} << (8 * k);
-        const std::uint32_t link = coder.decode(element, code);
+        const std::uint32_t link = coder.decode(element, region.links[i]);
         if (link != no_link) {
             const std::uint32_t to = link >> element_bits;
             if (to >= regions.size() || (link & element_mask) >= regions[to].count)

@@ -22,7 +22,7 @@ struct BlockInfo {
 class Reader {
 public:
     /// Throws Error (with the offset) if the file is missing, no trace, of a newer version, truncated or damaged in its
-    /// header or footer.
+    /// header or footer, or if it asks for more than memory_limit() bytes: its head, or later one of its blocks.
     explicit Reader(const std::string& path);
     ~Reader();
     Reader(Reader&&) noexcept;

@@ -11,6 +11,7 @@
 #include "traces/format.hpp"
 #include "traces/header_codec.hpp"
 #include "traces/input_file.hpp"
+#include "traces/memory_budget.hpp"
 #include "traces/verify.hpp"
 #include "traces/writer.hpp"
 
@@ -38,21 +39,25 @@ std::uint64_t next_magic(const InputFile& file, std::uint64_t from, Bytes& windo
 }
 
 /// The block at `offset` if every byte of it is good.
-std::optional<Found> whole_block(const InputFile& file, const Header& header, std::uint64_t offset, Bytes& bytes) {
+std::optional<Found> whole_block(const InputFile& file, const Header& header, const MemoryBudget& budget,
+                                 std::size_t launches, std::uint64_t offset, Bytes& bytes) {
     try {
         const std::uint64_t left = file.bytes() - offset;
         file.read(offset, std::min<std::uint64_t>(left, format::block_head_bytes), bytes);
         if (bytes.size() < format::block_head_bytes) return std::nullopt;
         const auto size = load<std::uint32_t>(bytes.data() + 8);
         if (size > left) return std::nullopt;
+        budget.check(size, file.at(offset).path, "bytes of a block");
         file.read(offset, size, bytes);
         std::vector<WarpTrace> warps;
-        const Found found{offset, decode_block(header, bytes, file.at(offset), warps)};
+        const Found found{offset, decode_block(header, bytes, file.at(offset), budget, warps)};
         const BlockHead& head = found.head;
-        if (head.launch >= header.launches.size() || head.first_warp >= header.warps_per_launch ||
+        if (head.launch >= launches || head.first_warp >= header.warps_per_launch ||
             head.warps > header.warps_per_launch - head.first_warp)
             return std::nullopt;
         return found;
+    } catch (const MemoryError&) {
+        throw;
     } catch (const Error&) {
         return std::nullopt;
     }
@@ -82,24 +87,25 @@ RecoverResult recover(const std::string& damaged, const std::string& recovered) 
     Bytes bytes;
     file.read(0, std::min<std::uint64_t>(file.bytes(), format::fixed_header_bytes), bytes);
     const std::uint64_t head_bytes = header_bytes(bytes, file.bytes(), file.at(0));
+    MemoryBudget budget;
+    budget.charge(head_bytes, damaged, "head of the trace");
     file.read(0, head_bytes, bytes);
-    Header header = decode_header(bytes, file.at(0));
+    Header kept = decode_header(bytes, file.at(0), budget);
+    const std::vector<std::uint32_t> all = std::exchange(kept.launches, {});
 
-    std::vector<std::map<std::uint32_t, Found>> launches(header.launches.size());
+    std::vector<std::map<std::uint32_t, Found>> launches(all.size());
     std::uint64_t seen = 0;
     for (std::uint64_t at = next_magic(file, head_bytes, bytes); at < file.bytes(); at = next_magic(file, at, bytes)) {
         ++seen;
-        const auto found = whole_block(file, header, at, bytes);
+        const auto found = whole_block(file, kept, budget, all.size(), at, bytes);
         if (found) launches[found->head.launch].emplace(found->head.first_warp, *found);
         at += found ? found->head.bytes : format::block_magic.size();
     }
 
     RecoverResult result;
-    Header kept = header;
-    kept.launches.clear();
     for (std::size_t i = 0; i < launches.size(); ++i) {
-        if (complete(launches[i], header.warps_per_launch)) {
-            kept.launches.push_back(header.launches[i]);
+        if (complete(launches[i], kept.warps_per_launch)) {
+            kept.launches.push_back(all[i]);
             result.blocks_kept += launches[i].size();
         } else {
             launches[i].clear();

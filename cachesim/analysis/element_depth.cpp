@@ -1,6 +1,9 @@
 #include "cachesim/analysis/element_depth.hpp"
 
 #include <algorithm>
+#include <cstdint>
+
+#include "traces/memory_budget.hpp"
 
 namespace raycache::cachesim {
 
@@ -18,6 +21,9 @@ ElementDepth::ElementDepth(const std::vector<traces::Region>& regions)
     : depths_(std::min(regions.size(), linked_regions)) {
     if (regions.empty() || regions[0].count == 0 || regions[0].links.empty()) return;
     known_ = true;
+    std::uint64_t elements = 0;
+    for (std::size_t r = 0; r < depths_.size(); ++r) elements += regions[r].count;
+    MemoryBudget().check(elements, "trace", "the depth of each element that links may lead to");
     for (std::size_t r = 0; r < depths_.size(); ++r) depths_[r].assign(regions[r].count, none);
 
     // Breadth first, so that the first way found is the shortest.

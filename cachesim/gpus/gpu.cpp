@@ -4,16 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/presets.hpp"
 #include "traces/error.hpp"
 #include "traces/input_pipe.hpp"
+#include "traces/regular_file.hpp"
 
 namespace raycache::cachesim {
 
@@ -23,26 +19,14 @@ namespace {
 constexpr std::size_t most_file_bytes = std::size_t{1} << 20;
 
 std::string read_file(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        throw Error(fmt::format("{}: expected a .toml file that describes a GPU, found a folder", path));
-    std::string text;
     if (traces::is_pipe(path)) {
-        text = traces::read_pipe(path, most_file_bytes + 1);
-    } else {
-        std::ifstream file(path, std::ios::binary);
-        if (!file)
-            throw Error(
-                fmt::format("{}: expected a .toml file that describes a GPU, found none to read ({}); check the path",
-                            path, std::strerror(errno)));
-        text.resize(most_file_bytes + 1);
-        file.read(text.data(), static_cast<std::streamsize>(text.size()));
-        text.resize(static_cast<std::size_t>(file.gcount()));
-    }
-    if (text.size() > most_file_bytes)
+        const std::string text = traces::read_pipe(path, most_file_bytes + 1);
+        if (text.size() <= most_file_bytes) return text;
         throw Error(fmt::format("{}: expected a .toml file of at most {} bytes, found a longer one; check the path",
                                 path, most_file_bytes));
-    return text;
+    }
+    const auto bytes = read_regular_file(path, "a .toml file that describes a GPU", nullptr, most_file_bytes);
+    return {bytes.begin(), bytes.end()};
 }
 
 /// A GPU file and what errors call it.

@@ -15,18 +15,14 @@
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/gpus/toml_guard.hpp"
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
 
 #define TOML_HEADER_ONLY 1
 #include <toml++/toml.h>
 
 namespace raycache::cachesim {
-
-inline std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    return text;
-}
 
 /// A value's name in the file, and the C++ value that it stands for.
 template <class Enum>
@@ -38,11 +34,13 @@ struct Choice {
 class TomlReader {
 public:
     TomlReader(const std::string& toml, const std::string& file) : file_(file) {
+        if (const auto problem = find_toml_problem(toml))
+            throw Error(fmt::format("{}:{}: {}; correct the line", file_, problem->line, problem->message));
         try {
             root_ = toml::parse(toml, file);
         } catch (const toml::parse_error& e) {
             throw Error(fmt::format("{}:{}: expected TOML, found an error: {}; correct the line", file_,
-                                    e.source().begin.line, one_line(std::string(e.description()))));
+                                    e.source().begin.line, printable_line(std::string(e.description()))));
         }
     }
 
@@ -51,6 +49,7 @@ public:
     std::string change(const std::string& assignment) {
         toml::table given;
         const auto parse = [&](const std::string& text) {
+            if (find_toml_problem(text)) return;
             try {
                 given = toml::parse(text);
             } catch (const toml::parse_error&) {
@@ -63,7 +62,7 @@ public:
             parse(fmt::format("{}=\"{}\"", assignment.substr(0, equals), assignment.substr(equals + 1)));
         if (given.size() != 1)
             throw UsageError(fmt::format("expected KEY=VALUE such as l1.ways=64 or l1.policy=fifo, found \"{}\"",
-                                         one_line(assignment)));
+                                         printable_line(assignment)));
         const std::string key(given.begin()->first.str());
         const toml::node& value = given.begin()->second;
         const toml::table* inner = value.as_table();
@@ -73,8 +72,8 @@ public:
         }
         toml::table* own = root_[key].as_table();
         if (!own || inner->size() != 1)
-            throw UsageError(
-                fmt::format("{}: expected a key of a table of the file, found \"{}\"", file_, one_line(assignment)));
+            throw UsageError(fmt::format("{}: expected a key of a table of the file, found \"{}\"", file_,
+                                         printable_line(assignment)));
         const std::string inner_key(inner->begin()->first.str());
         own->insert_or_assign(inner_key, inner->begin()->second);
         return key + '.' + inner_key;
@@ -123,8 +122,8 @@ public:
             if (!string || string->get().empty())
                 reader_->fail(line_of(node), prefix_ + key,
                               fmt::format("expected a text, found {}", string ? "an empty one" : type_name(node)));
-            if (!plain) reader_->values_.back().value = one_line(string->get());
-            return one_line(string->get());
+            if (!plain) reader_->values_.back().value = printable_line(string->get());
+            return printable_line(string->get());
         }
 
         /// A text that may be empty, or be left out, which is the same.
@@ -214,7 +213,7 @@ private:
         for (const auto& [key, node] : table) {
             const std::string name(key.str());
             if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-                fail(key.source().begin.line, one_line(prefix + name),
+                fail(key.source().begin.line, printable_line(prefix + name),
                      fmt::format("expected one of the keys {}, found an unknown one; correct or remove it",
                                  fmt::join(known, ", ")));
         }
@@ -240,7 +239,7 @@ private:
         const toml::node& source = find(*pair, name + ".", "source");
         if (!source.is_string())
             fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));
-        values_.push_back({name, "", one_line(source.value_or(std::string()))});
+        values_.push_back({name, "", printable_line(source.value_or(std::string()))});
         return find(*pair, name + ".", "value");
     }
 

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "traces/printable.hpp"
+
 namespace raycache::cachesim {
 
 /// Columns that every text for people keeps to unless it is asked for more: a terminal's usual width, a pager's, a
@@ -19,15 +21,18 @@ public:
     enum class Align { left, right };
 
     /// `rank`: how soon the column goes where there is no room for all; 0 stays, the highest goes first.
-    void column(std::string title, Align align, unsigned rank = 0) {
-        columns_.push_back({std::move(title), align, rank, false});
+    void column(const std::string& title, Align align, unsigned rank = 0) {
+        columns_.push_back({printable_line(title), align, rank, false});
     }
     /// A column that says what a row is of: GPU, N, sequence. Where all rows are of the same, a line above the table
     /// says it once, unless it is the first column.
-    void subject(std::string title, Align align) { columns_.push_back({std::move(title), align, 0, true}); }
-    /// As many cells as columns. A row whose first cell is empty goes on with the row above: its subjects are empty,
-    /// too.
-    void row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+    void subject(const std::string& title, Align align) { columns_.push_back({printable_line(title), align, 0, true}); }
+    /// As many cells as columns; what a name in one must not do to a terminal or to the table is taken out of it. A row
+    /// whose first cell is empty goes on with the row above: its subjects are empty, too.
+    void row(std::vector<std::string> cells) {
+        for (std::string& cell : cells) cell = printable_line(cell);
+        rows_.push_back(std::move(cells));
+    }
 
     /// What all rows share, title line, rule, rows; every line ends in '\n', none in spaces. Wider than `width`, it is
     /// made narrower step by step: titles in two lines; long names of subjects as letters, explained below; then

@@ -8,6 +8,7 @@
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/table.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::cachesim {
 
@@ -151,7 +152,7 @@ std::string to_text(const Report& report) {
     text += factor_table(report, columns);
     if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';
-    for (const std::string& note : report.notes) text += "note: " + note + '\n';
+    for (const std::string& note : report.notes) text += "note: " + printable_line(note) + '\n';
     return text;
 }
 

@@ -13,6 +13,7 @@
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/timed_figures.hpp"
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::cachesim {
 
@@ -200,7 +201,7 @@ std::string to_text(const TimedReport& report) {
         "all SMs "
         "share.\n"
         "visit latency: cycles from the first load of a visit to its last data.\n";
-    for (const std::string& note : report.notes) text += "note: " + note + "\n";
+    for (const std::string& note : report.notes) text += "note: " + printable_line(note) + "\n";
     return text;
 }
 

@@ -71,6 +71,31 @@ TEST_CASE("cameras that make no perspective picture are skipped with a warning")
     CHECK(warnings[0].find("skipped 1") != std::string::npos);
 }
 
+TEST_CASE("a camera beyond the limit of vertices says so, and its place stays in the order of cameras") {
+    for (const double far : {1.1e18, -1e19, 1e30, 1e200}) {
+        const auto [scene, warnings] = load(with_camera(perspective(1), {{"translation", {0, far, 0}}}));
+        REQUIRE(scene.cameras.size() == 1);
+        CHECK(scene.cameras[0].problem.find("expected an eye within 1e+18 m") == 0);
+        CHECK(warnings.empty());
+    }
+    CHECK(load(with_camera(perspective(1), {{"translation", {1e18, -1e18, 0}}})).scene.cameras[0].problem.empty());
+}
+
+TEST_CASE("a camera's direction survives any scale of its node") {
+    for (const double scale : {1e-300, 1e-30, 1e30, 1e300}) {
+        const Scene scene =
+            load(with_camera(perspective(1), {{"rotation", {0, 1, 0, 1}}, {"scale", {scale, scale, scale}}})).scene;
+        REQUIRE(scene.cameras.size() == 1);
+        CHECK(length(scene.cameras[0].forward - Vec3{-1, 0, 0}) < 1e-6F);
+        CHECK(length(scene.cameras[0].up - Vec3{0, 1, 0}) < 1e-6F);
+    }
+}
+
+TEST_CASE("a scene too large to be seen whole from within the limits has no automatic camera") {
+    CHECK_FALSE(overview_camera(Box{{-1e18F, -1e18F, -1e18F}, {1e18F, 1e18F, 1e18F}}).problem.empty());
+    CHECK(overview_camera(Box{{-1e17F, -1e17F, -1e17F}, {1e17F, 1e17F, 1e17F}}).problem.empty());
+}
+
 TEST_CASE("a camera without the numbers it needs is an error") {
     for (const json& camera : {json{{"type", "perspective"}}, json{{"type", "fisheye"}}, json::object(),
                                json{{"type", "perspective"}, {"perspective", {{"znear", 1}}}}}) {

@@ -105,6 +105,41 @@ TEST_CASE("cameras that make no picture are usage errors") {
     }
 }
 
+TEST_CASE("an eye or a look-at point beyond the limit of vertices is a usage error, one at it is not") {
+    for (const float far : {1.001e18F, -2e18F, 1e19F, 1e30F, 3e38F}) {
+        SceneRequest request;
+        request.eye = Vec3{0, far, 0};
+        request.look_at = Vec3{0, 0, 0};
+        CHECK(mentions(usage_error(request), "--eye 0,"));
+        std::swap(request.eye, request.look_at);
+        CHECK(mentions(usage_error(request), "--look-at 0,"));
+    }
+    SceneRequest request;
+    request.eye = Vec3{1e18F, 0, 0};
+    request.look_at = Vec3{-1e18F, 0, 0};
+    CHECK(load_with(request).scene.cameras[0].forward == Vec3{-1, 0, 0});
+}
+
+TEST_CASE("a camera of the file beyond the limit is refused where it is chosen, and only there") {
+    GltfBuilder builder = room();
+    builder.node({{"name", "beyond"}, {"camera", 0}, {"translation", {1e30, 3, 0}}});
+    SceneRequest request;
+    CHECK(load_with(request, builder).scene.cameras[0].name == "near");
+    request.camera = "beyond";
+    const std::string message = [&]() -> std::string {
+        try {
+            load_with(request, builder);
+        } catch (const Error& e) {
+            return dynamic_cast<const UsageError*>(&e) ? "a usage error" : e.what();
+        }
+        return "(no error)";
+    }();
+    CHECK(mentions(message, "room.glb: camera beyond: expected an eye within 1e+18 m"));
+    request.eye = Vec3{1, 2, 3};
+    request.look_at = Vec3{0, 0, 0};
+    CHECK(load_with(request, builder).scene.cameras[0].eye == Vec3{1, 2, 3});
+}
+
 TEST_CASE("a file without a light gets a sky and a sun, and a warning says so") {
     const auto [scene, warnings] = load_with({});
     CHECK(luminance(scene.sky) > 0);

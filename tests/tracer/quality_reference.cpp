@@ -1,7 +1,9 @@
 // References: rendered, kept in files, and found again only where they are what was asked for.
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "tests/traces/files.hpp"
 #include "tracer/quality/error_measures.hpp"
@@ -30,6 +32,8 @@ ReferenceSettings small() {
     settings.spp = 6;
     return settings;
 }
+
+constexpr ImageSize size{24, 16};  // of small()
 
 }  // namespace
 
@@ -80,7 +84,7 @@ TEST_CASE("a reference read back from its file is the one written, bit by bit", 
     const TemporaryFolder folder;
     const Reference written = render_reference(courtyard(), small(), {});
     write_reference(folder / "a.exr", written);
-    const Reference read = read_reference(folder / "a.exr", written.key);
+    const Reference read = read_reference(folder / "a.exr", written.key, size);
     CHECK(read.mean.pixels == written.mean.pixels);
     CHECK(read.half_difference.pixels == written.half_difference.pixels);
     CHECK(read.mean.width == 24);
@@ -96,11 +100,11 @@ TEST_CASE("files that are not the wanted reference are refused", "[quality]") {
     write_reference(path, written);
     const std::vector<std::uint8_t> whole = read_file(path);
 
-    SECTION("another key") { CHECK_THROWS_AS(read_reference(path, written.key + "!"), Error); }
-    SECTION("missing") { CHECK_THROWS_AS(read_reference(folder / "none.exr", written.key), Error); }
+    SECTION("another key") { CHECK_THROWS_AS(read_reference(path, written.key + "!", size), Error); }
+    SECTION("missing") { CHECK_THROWS_AS(read_reference(folder / "none.exr", written.key, size), Error); }
     SECTION("an EXR of someone else's") {
         write_image(folder / "b.exr", written.mean);
-        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key), Error);
+        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key, size), Error);
     }
     SECTION("our mark, but other pixels") {
         std::vector<Channel> channels;
@@ -108,11 +112,11 @@ TEST_CASE("files that are not the wanted reference are refused", "[quality]") {
             channels.push_back({name, std::vector<float>(24 * 16, 1)});
         write_channels(folder / "b.exr", 24, 16, channels,
                        {{"raycache:reference", written.key}, {"raycache:checksum", "0000000000000000"}});
-        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key), Error);
+        CHECK_THROWS_AS(read_reference(folder / "b.exr", written.key, size), Error);
     }
     SECTION("text") {
         write_file(path, {'h', 'e', 'l', 'l', 'o'});
-        CHECK_THROWS_AS(read_reference(path, written.key), Error);
+        CHECK_THROWS_AS(read_reference(path, written.key, size), Error);
     }
     SECTION("cut short anywhere, or one byte changed: never other pixels") {
         std::size_t wrong = 0, refused = 0, tried = 0;
@@ -124,7 +128,7 @@ TEST_CASE("files that are not the wanted reference are refused", "[quality]") {
                 write_file(path, bytes);
                 ++tried;
                 try {
-                    const Reference read = read_reference(path, written.key);
+                    const Reference read = read_reference(path, written.key, size);
                     wrong += read.mean.pixels != written.mean.pixels ||
                              read.half_difference.pixels != written.half_difference.pixels;
                 } catch (const Error&) {
@@ -134,6 +138,51 @@ TEST_CASE("files that are not the wanted reference are refused", "[quality]") {
         }
         CHECK(wrong == 0);
         CHECK(refused > tried / 2);
+    }
+}
+
+TEST_CASE("a reference with the right key and checksum but pixels that no picture has is refused", "[quality]") {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.exr";
+    const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    const auto message_of = [&](Reference reference, ImageSize wanted) {
+        write_reference(path, reference);
+        return refusal([&] { read_reference(path, "key", wanted); });
+    };
+    Reference good{{8, 4, {}}, {8, 4, {}}, "key"};
+    good.mean.pixels.assign(32, {1, 2, 0});
+    good.half_difference.pixels.assign(32, {0.5F, -2, 0});
+    CHECK(message_of(good, {8, 4}).empty());
+
+    SECTION("another size: said before the pixels are looked at") {
+        for (const ImageSize wanted : {ImageSize{4, 8}, ImageSize{8, 5}, ImageSize{16, 2}, ImageSize{3000, 3000}}) {
+            const std::string message = message_of(good, wanted);
+            CHECK(message.find(fmt::format("expected {} x {} pixels, found 8 x 4", wanted.width, wanted.height)) !=
+                  std::string::npos);
+        }
+    }
+    SECTION("no radiance") {
+        for (const float bad : {nan, infinity, -infinity, -1e-20F}) {
+            Reference reference = good;
+            reference.mean.pixels[21].y = bad;
+            const std::string message = message_of(reference, {8, 4});
+            INFO(message);
+            CHECK(message.find("channel G at pixel 5, 2") != std::string::npos);
+        }
+    }
+    SECTION("a half picture that is none") {
+        for (const float bad : {nan, infinity, -infinity, 1.01F, -1.01F}) {
+            Reference reference = good;
+            reference.half_difference.pixels[31].x = bad;
+            const std::string message = message_of(reference, {8, 4});
+            INFO(message);
+            CHECK(message.find("channel half_difference.R at pixel 7, 3") != std::string::npos);
+        }
+    }
+    SECTION("a folder, an empty file, a device without an end") {
+        write_file(folder / "empty.exr", {});
+        for (const std::string& bad : {folder / "", folder / "empty.exr", std::string("/dev/zero")})
+            CHECK(refusal([&] { read_reference(bad, "key", {8, 4}); }).find("expected") != std::string::npos);
     }
 }
 

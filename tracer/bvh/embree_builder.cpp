@@ -13,8 +13,6 @@
 namespace raycache::tracer {
 namespace {
 
-/// Beyond this the builder's surface areas overflow.
-constexpr float largest_coordinate = 1e18F;
 /// Room for references that spatial splits add, as a share of the triangles.
 constexpr double split_budget = 0.5;
 
@@ -137,9 +135,9 @@ Bvh build_bvh(const Scene& scene, const BvhSettings& settings) {
     if (scene.triangle_count() == 0) throw Error(fmt::format("{}: no triangle to build a BVH from", scene.name));
     const Box bounds = scene.bounds();
     const float reach = std::max(max_component(bounds.upper), max_component(-bounds.lower));
-    if (!(reach <= largest_coordinate))
+    if (!(reach <= max_coordinate))
         throw Error(fmt::format("{}: a coordinate of {:g}; expected at most {:g}: scale the scene down", scene.name,
-                                reach, largest_coordinate));
+                                reach, max_coordinate));
 
     auto primitives = make_primitives(scene, settings.spatial_splits ? 1 + split_budget : 1);
     const RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");

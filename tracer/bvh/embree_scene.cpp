@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tracer/scene/cutout.hpp"
@@ -100,6 +101,14 @@ struct EmbreeScene::Impl {
         }
     }
 
+    /// What Embree takes: beyond it asserts, or where those are off answers at random. A ray that rounding or a scene
+    /// of extreme size has spoilt meets nothing.
+    static bool takes(const Ray& ray) {
+        constexpr float most = 1.844e18F;  // FLT_LARGE of Embree 3
+        const auto within = [](Vec3 v) { return std::abs(v.x) < most && std::abs(v.y) < most && std::abs(v.z) < most; };
+        return within(ray.origin) && within(ray.direction) && ray.t_min >= 0 && ray.t_min <= ray.t_max;
+    }
+
     static RTCRay query(const Ray& ray) {
         return {ray.origin.x,
                 ray.origin.y,
@@ -122,6 +131,7 @@ EmbreeScene::EmbreeScene(const Scene& scene, const TexelLayout& texels)
 EmbreeScene::~EmbreeScene() = default;
 
 Hit EmbreeScene::intersect(const Ray& ray) const {
+    if (!Impl::takes(ray)) return {};
     RTCRayHit query;
     query.ray = Impl::query(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -134,6 +144,7 @@ Hit EmbreeScene::intersect(const Ray& ray) const {
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
+    if (!Impl::takes(ray)) return false;
     RTCRay query = Impl::query(ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

@@ -2,6 +2,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tracer/image_codec.hpp"
@@ -60,6 +61,9 @@ public:
         layout.height = image.spec.height;
         layout.channels = image.spec.nchannels;
         layout.floats = image.spec.format == OIIO::TypeDesc::FLOAT;
+        layout.flat = image.spec.depth <= 1 && !image.spec.deep &&
+                      std::all_of(image.spec.channelformats.begin(), image.spec.channelformats.end(),
+                                  [&](const OIIO::TypeDesc& type) { return type == image.spec.format; });
         layout.channel_names = image.spec.channelnames;
         for (auto& [name, text] : layout.attributes) text = std::string(image.spec.get_string_attribute(name));
         return {};

@@ -15,7 +15,7 @@ public:
     CameraRays(const Camera& camera, std::uint32_t width, std::uint32_t height)
         : eye_(camera.eye),
           forward_(camera.forward),
-          half_height_(std::tan(camera.vertical_fov * (std::numbers::pi_v<float> / 360.0F))),
+          half_height_(std::fabs(std::tan(camera.vertical_fov * (std::numbers::pi_v<float> / 360.0F)))),
           width_(static_cast<float>(width)),
           height_(static_cast<float>(height)) {
         right_ = normalize(cross(camera.forward, camera.up));

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "traces/error.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
 
@@ -66,6 +67,9 @@ Reference render_reference(const PreparedScene& scene, const ReferenceSettings& 
     if (settings.spp < 2 || settings.spp / block > seeds / 2)
         throw UsageError(fmt::format("reference: expected 2 to {} samples per pixel, found {}; choose another number",
                                      seeds / 2 * block, settings.spp));
+    constexpr std::uint64_t pixel_bytes = 2 * sizeof(Sum) + 3 * sizeof(Vec3);  // two halves, what is made of them
+    MemoryBudget().check(pixel_bytes * settings.width * settings.height,
+                         fmt::format("{} x {} pixels", settings.width, settings.height), "the reference picture");
     const std::uint64_t half = (settings.spp + 1) / 2;
     const auto a = render_half(scene, settings, half, first_seed, progress);
     const auto b = render_half(scene, settings, half, first_seed + 1, progress);

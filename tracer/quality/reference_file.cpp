@@ -4,8 +4,10 @@
 #include <xxhash.h>
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 
 #include "traces/error.hpp"
 
@@ -27,6 +29,29 @@ std::string checksum(const std::vector<Channel>& channels) {
     throw Error(fmt::format("{}: expected {}, found {}; remove it or name another file", path, expected, found));
 }
 
+const Channel& find_channel(const std::string& path, const ChannelFile& file, const char* name) {
+    for (const Channel& channel : file.channels)
+        if (channel.name == name) return channel;
+    refuse(path, fmt::format("a channel {}", name), "none");
+}
+
+/// Radiance is finite and not negative, in the mean as in either half, mean ± half difference.
+void check_values(const std::string& path, const std::vector<Channel>& channels, std::uint32_t width) {
+    constexpr float rounding = 1e-4F;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t p = 0; p < channels[c].values.size(); ++p) {
+            const float mean = channels[c].values[p], half = channels[c + 3].values[p];
+            const auto at = [&](const char* name) {
+                return fmt::format("{} in channel {} at pixel {}, {}", name == names[c] ? mean : half, name, p % width,
+                                   p / width);
+            };
+            if (!std::isfinite(mean) || mean < 0) refuse(path, "finite values of 0 or more", at(names[c]));
+            if (!(std::abs(half) <= mean * (1 + rounding) + std::numeric_limits<float>::min()))
+                refuse(path, fmt::format("half differences of at most the mean, here {}", mean), at(names[c + 3]));
+        }
+    }
+}
+
 }  // namespace
 
 void write_reference(const std::string& path, const Reference& reference) {
@@ -40,19 +65,24 @@ void write_reference(const std::string& path, const Reference& reference) {
                    {{key_attribute, reference.key}, {checksum_attribute, checksum(channels)}});
 }
 
-Reference read_reference(const std::string& path, const std::string& key) {
-    const ChannelFile file = read_channels(path, {key_attribute, checksum_attribute});
-    const std::string& found_key = file.attributes[0].second;
-    if (found_key.empty()) refuse(path, "a reference that raycache wrote", "an image without its mark");
-    if (found_key != key) refuse(path, fmt::format("the reference \"{}\"", key), fmt::format("\"{}\"", found_key));
+Reference read_reference(const std::string& path, const std::string& key, ImageSize size) {
+    const auto check_header = [&](const ChannelFile& header) {
+        const std::string& found_key = header.attributes[0].second;
+        if (found_key.empty()) refuse(path, "a reference that raycache wrote", "an image without its mark");
+        if (found_key != key) refuse(path, fmt::format("the reference \"{}\"", key), fmt::format("\"{}\"", found_key));
+        if (header.width != size.width || header.height != size.height)
+            refuse(path, fmt::format("{} x {} pixels", size.width, size.height),
+                   fmt::format("{} x {}", header.width, header.height));
+        if (header.channels.size() != names.size())
+            refuse(path, fmt::format("{} channels", names.size()), fmt::format("{}", header.channels.size()));
+        for (const char* name : names) find_channel(path, header, name);
+    };
+    const ChannelFile file = read_channels(path, {key_attribute, checksum_attribute}, check_header);
     std::vector<Channel> channels;
-    for (const char* name : names) {
-        for (const Channel& channel : file.channels)
-            if (channel.name == name) channels.push_back(channel);
-        if (channels.empty() || channels.back().name != name) refuse(path, fmt::format("a channel {}", name), "none");
-    }
+    for (const char* name : names) channels.push_back(find_channel(path, file, name));
     if (checksum(channels) != file.attributes[1].second)
         refuse(path, fmt::format("pixels with checksum {}", file.attributes[1].second), checksum(channels));
+    check_values(path, channels, file.width);
 
     Reference reference{{file.width, file.height, {}}, {file.width, file.height, {}}, key};
     for (std::size_t p = 0; p < channels[0].values.size(); ++p) {

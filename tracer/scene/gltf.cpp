@@ -87,6 +87,19 @@ std::uint64_t hash_of(const GltfDocument& document, const std::vector<GltfImageB
     return XXH3_64bits_digest(state.get());
 }
 
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& list) {
+    return list.capacity() * sizeof(T);
+}
+
+/// What stays in memory of the scene.
+std::uint64_t bytes_of(const Scene& scene) {
+    std::uint64_t bytes = bytes_of(scene.positions) + bytes_of(scene.normals) + bytes_of(scene.texcoords) +
+                          bytes_of(scene.indices) + bytes_of(scene.material_of);
+    for (const Texture& texture : scene.textures) bytes += bytes_of(texture.rgba);
+    return bytes;
+}
+
 Scene load(const GltfReport& report) {
     const GltfDocument document = read_gltf_document(report);
     const GltfNodes nodes = place_gltf_nodes(document, report);
@@ -94,6 +107,7 @@ Scene load(const GltfReport& report) {
     GltfMaterials materials = read_gltf_materials(document, used_materials(document.model, placed, report), report);
 
     Scene scene;
+    scene.memory = report.memory();
     scene.name = std::filesystem::path(report.path()).filename().string();
     scene.materials = std::move(materials.materials);
     GltfLosses losses;
@@ -116,6 +130,8 @@ Scene load(const GltfReport& report) {
     scene.textures = decode_gltf_textures(images, scene.materials, report);
     scene.cameras = read_gltf_cameras(document, nodes.cameras, report);
     if (scene.cameras.empty()) scene.cameras.push_back(overview_camera(scene.bounds()));
+    const std::uint64_t used = scene.memory->used(), kept = bytes_of(scene);
+    if (used > kept) scene.memory->release(used - kept);  // the file itself is no longer needed
     return scene;
 }
 

@@ -118,6 +118,7 @@ void GltfAccessor::read_sparse(const GltfDocument& document, const tinygltf::Acc
     check_extent(indices.size(), indices_offset, sparse_count, stride, stride, where + " sparse indices", report);
     check_extent(values.size(), values_offset, sparse_count, element_bytes, element_bytes, where + " sparse values",
                  report);
+    report.charge(sparse_count * sizeof(sparse_.front()), where + " sparse elements");
     sparse_.reserve(sparse_count);
     for (std::uint64_t i = 0; i < sparse_count; ++i) {
         const std::uint32_t element = load_integer(indices.data() + indices_offset + i * stride, index_bytes);

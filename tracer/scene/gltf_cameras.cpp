@@ -1,11 +1,33 @@
 #include "tracer/scene/gltf_cameras.hpp"
+#include "traces/printable.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace raycache::tracer {
+
+namespace {
+
+/// A column of the linear part, unit; of any length that a double has. Zero where it has no direction.
+Vec3 axis_of(const Transform& t, std::size_t axis) {
+    const double x = t.rows[0][axis], y = t.rows[1][axis], z = t.rows[2][axis];
+    const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
+    if (!(largest > 0) || !std::isfinite(largest)) return {0, 0, 0};
+    const double size = std::hypot(x / largest, y / largest, z / largest);
+    const auto part = [&](double v) { return static_cast<float>(v / largest / size); };
+    return {part(x), part(y), part(z)};
+}
+
+void check_place(Camera& camera) {
+    if (is_usable_position(camera.eye)) return;
+    camera.problem = fmt::format("expected an eye within {:g} m of the origin on each axis, found {:g},{:g},{:g}",
+                                 max_coordinate, camera.eye.x, camera.eye.y, camera.eye.z);
+}
+
+}  // namespace
 
 std::vector<Camera> read_gltf_cameras(const GltfDocument& document, const std::vector<GltfPlacement>& placements,
                                       const GltfReport& report) {
@@ -19,18 +41,19 @@ std::vector<Camera> read_gltf_cameras(const GltfDocument& document, const std::v
             continue;
         }
         Camera camera;
-        camera.name = one_line(!node.name.empty()     ? node.name
-                               : !source.name.empty() ? source.name
-                                                      : fmt::format("camera{}", result.size()));
+        camera.name = printable_line(!node.name.empty()     ? node.name
+                                     : !source.name.empty() ? source.name
+                                                            : fmt::format("camera{}", result.size()));
         camera.eye = placement.to_world.column(3);
-        camera.forward = normalize(-placement.to_world.column(2));
-        camera.up = orthogonal_up(camera.forward, normalize(placement.to_world.column(1)));
+        camera.forward = -axis_of(placement.to_world, 2);
+        camera.up = orthogonal_up(camera.forward, axis_of(placement.to_world, 1));
         camera.vertical_fov = static_cast<float>(source.perspective.yfov * 180 / std::numbers::pi);
         const bool has_direction = std::abs(length(camera.forward) - 1) < 1e-3F && is_finite(camera.up);
-        if (!has_direction || !is_finite(camera.eye) || !(camera.vertical_fov > 0) || !(camera.vertical_fov < 180)) {
+        if (!has_direction || !(camera.vertical_fov > 0) || !(camera.vertical_fov < 180)) {
             ++unusable;
             continue;
         }
+        check_place(camera);
         result.push_back(std::move(camera));
     }
     if (orthographic > 0) report.warning(fmt::format("skipped {} orthographic cameras", orthographic));
@@ -55,6 +78,7 @@ Camera overview_camera(const Box& box) {
     camera.eye = center + towards_eye * static_cast<float>(distance);
     camera.forward = -towards_eye;
     camera.up = orthogonal_up(camera.forward, {0, 1, 0});
+    check_place(camera);
     return camera;
 }
 

@@ -2,13 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-
-#include "traces/error.hpp"
+#include "traces/regular_file.hpp"
 
 namespace raycache::tracer {
 
@@ -52,36 +46,9 @@ void split_glb(GltfContainer& file, const GltfReport& report) {
 
 }  // namespace
 
-std::vector<std::uint8_t> read_regular_file(const std::string& path, const std::string& what) {
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const auto status = fs::status(path, error);
-    if (!fs::exists(status))
-        throw Error(one_line(fmt::format("{}: {}: expected a file, found none; check the path", path, what)));
-    if (!fs::is_regular_file(status))
-        throw Error(one_line(
-            fmt::format("{}: {}: expected a regular file, found a folder or a device; check the path", path, what)));
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error)
-        throw Error(
-            one_line(fmt::format("{}: {}: cannot tell its size ({}); check the disk", path, what, error.message())));
-    if (size > std::numeric_limits<std::uint32_t>::max())
-        throw Error(one_line(
-            fmt::format("{}: {}: expected less than 4 GiB, found {} bytes; split the scene", path, what, size)));
-    std::vector<std::uint8_t> bytes(size);
-    std::ifstream in(path, std::ios::binary);
-    if (!in)
-        throw Error(one_line(
-            fmt::format("{}: {}: cannot open it ({}); check the permissions", path, what, std::strerror(errno))));
-    if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-        throw Error(one_line(fmt::format("{}: {}: expected {} bytes, found {}; the file changed or the disk is faulty",
-                                         path, what, size, in.gcount())));
-    return bytes;
-}
-
 GltfContainer read_gltf_container(const GltfReport& report) {
     GltfContainer file;
-    file.bytes = read_regular_file(report.path(), "scene file");
+    file.bytes = read_regular_file(report.path(), "scene file", report.memory().get());
     const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
     if (text.empty()) report.fail("scene file", "a glTF 2.0 file", "an empty file", "copy or export it again");
     if (text.starts_with("glTF")) {

@@ -18,9 +18,6 @@ struct GltfContainer {
     std::optional<std::span<const std::uint8_t>> bin;  ///< into `bytes`: the BIN chunk of a .glb
 };
 
-/// Reads a regular file of less than 4 GiB. Throws Error "PATH: …" that calls it `what`.
-std::vector<std::uint8_t> read_regular_file(const std::string& path, const std::string& what);
-
 /// Reads the file and tells .glb from .gltf by its first bytes, not by its name. Throws Error if it is missing, empty,
 /// truncated, another version or something else.
 GltfContainer read_gltf_container(const GltfReport&);

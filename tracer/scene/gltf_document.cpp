@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tracer/scene/gltf_uri.hpp"
+#include "traces/regular_file.hpp"
 
 namespace raycache::tracer {
 
@@ -21,6 +22,10 @@ constexpr int max_json_depth = 64;
 constexpr std::array understood_extensions{"KHR_materials_emissive_strength", "KHR_materials_ior",
                                            "KHR_materials_transmission", "KHR_materials_volume",
                                            "KHR_mesh_quantization"};
+
+/// Bytes that the JSON text takes at most, parsed by nlohmann-json and by tinygltf, for each of its characters and for
+/// each object besides: "[0,0,…" makes a value of 16 bytes of two characters in either, "{}" of two a node or material.
+constexpr std::uint64_t memory_of_character = 32, memory_of_object = sizeof(tinygltf::Material) + 256;
 
 bool is_understood(const std::string& extension) {
     return std::find(understood_extensions.begin(), understood_extensions.end(), extension) !=
@@ -55,6 +60,8 @@ void remove_extras(json& value) {
 json parse_json(std::string_view text, const GltfReport& report) {
     if (const int depth = nesting_depth(text); depth > max_json_depth)
         report.fail("JSON text", fmt::format("at most {} nested levels", max_json_depth), fmt::format("{}", depth));
+    const auto objects = static_cast<std::uint64_t>(std::count(text.begin(), text.end(), '{'));
+    report.charge(text.size() * memory_of_character + objects * memory_of_object, "JSON text");
     json document;
     try {
         document = json::parse(text.begin(), text.end());
@@ -121,13 +128,14 @@ std::optional<std::string> string_member(const json& object, const char* key) {
 
 std::vector<std::uint8_t> read_buffer_uri(const std::string& uri, const std::string& where, const GltfReport& report) {
     if (is_data_uri(uri)) {
+        report.charge(uri.size() / 4 * 3, where);
         auto bytes = decode_data_uri(uri);
         if (!bytes) report.fail(where, "a base64 data: URI", "\"" + uri.substr(0, 40) + "…\"");
         return std::move(*bytes);
     }
     const auto path = resolve_relative_uri(report.path(), uri);
     if (!path) report.fail(where, "a relative path or a data: URI", "\"" + uri.substr(0, 200) + "\"");
-    return read_regular_file(*path, where + " of " + report.path());
+    return read_regular_file(*path, where + " of " + report.path(), report.memory().get());
 }
 
 void read_buffers(const json& descriptions, GltfDocument& document, const GltfReport& report) {

@@ -1,8 +1,6 @@
 #include "tracer/scene/gltf_flatten.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
 
 namespace raycache::tracer {
@@ -78,7 +76,8 @@ void append_primitive(const GltfPrimitive& primitive, const Transform& to_world,
 void check_scene_size(const std::vector<GltfPlacement>& placements,
                       const std::vector<std::vector<GltfPrimitiveSource>>& sources, const GltfReport& report) {
     constexpr std::uint64_t triangle_bytes = 3 * sizeof(std::uint32_t) + sizeof(std::uint16_t);
-    constexpr std::uint64_t vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2);
+    constexpr std::uint64_t vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2) + sizeof(std::uint32_t);
+    constexpr std::uint64_t placement_bytes = 16;  // none in truth: bounds the time that placing nothing takes
     std::uint64_t triangles = 0, bytes = 0;
     const auto add = [&](const GltfPrimitiveSource& primitive) {
         const std::uint64_t vertices = std::min(primitive.positions.count(), 3 * primitive.triangles);
@@ -92,12 +91,12 @@ void check_scene_size(const std::vector<GltfPlacement>& placements,
         for (const auto& primitive : mesh) add(primitive);  // each is decoded once
     triangles = 0;
     for (const GltfPlacement& placement : placements)
-        for (const auto& primitive : sources[static_cast<std::size_t>(placement.object)]) add(primitive);
-    const auto machine =
-        static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    if (bytes > machine)
-        report.fail("scene", fmt::format("at most the machine's memory, {} MiB", machine >> 20),
-                    fmt::format("{} MiB for {} triangles", bytes >> 20, triangles), "export a part of the scene");
+        for (const auto& primitive : sources[static_cast<std::size_t>(placement.object)]) {
+            add(primitive);
+            bytes += placement_bytes;
+            if (bytes > report.memory()->left()) break;  // enough to refuse it; there may be many more
+        }
+    report.charge(bytes, fmt::format("its {} triangles", triangles));
 }
 
 void flatten_gltf_meshes(const std::vector<GltfPlacement>& placements,

@@ -12,8 +12,9 @@ namespace raycache::tracer {
 /// A ray tracer's triangle ids leave room for a flag and a "none".
 constexpr std::uint64_t max_scene_triangles = (1ULL << 30) - 2;
 
-/// Throws Error if the placements make more than `max_scene_triangles` or need more memory than the machine has.
-/// `sources[m]` are the primitives of mesh m. Decodes nothing: call it before decode_gltf_primitive().
+/// Throws Error if the placements make more than `max_scene_triangles`; charges the report's budget with what they and
+/// the decoded primitives take. `sources[m]` are the primitives of mesh m. Decodes nothing: call it before
+/// decode_gltf_primitive().
 void check_scene_size(const std::vector<GltfPlacement>&, const std::vector<std::vector<GltfPrimitiveSource>>& sources,
                       const GltfReport&);
 

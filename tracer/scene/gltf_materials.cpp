@@ -1,4 +1,5 @@
 #include "tracer/scene/gltf_materials.hpp"
+#include "traces/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +46,7 @@ public:
         const tinygltf::Material& source = model_.materials[index];
         const std::string where = fmt::format("material {}", index);
         Material material;
-        material.name = one_line(source.name);
+        material.name = printable_line(source.name);
         const auto& factor = source.pbrMetallicRoughness.baseColorFactor;  // tinygltf: always 4
         in_range_ = true;
         material.base_color = {unit_interval(factor[0]), unit_interval(factor[1]), unit_interval(factor[2])};

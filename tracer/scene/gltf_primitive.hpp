@@ -1,7 +1,6 @@
 // One glTF mesh primitive as triangles, still in its own space; decoded once however often it is placed.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -12,13 +11,6 @@
 #include "tracer/vec.hpp"
 
 namespace raycache::tracer {
-
-/// A coordinate beyond this is treated like a non-finite one: squared distances would overflow a float.
-constexpr float max_coordinate = 1e18F;
-
-inline bool is_usable_position(Vec3 p) {
-    return std::abs(p.x) <= max_coordinate && std::abs(p.y) <= max_coordinate && std::abs(p.z) <= max_coordinate;
-}
 
 /// What was dropped or replaced on the way, summed over the file; each becomes at most one warning.
 struct GltfLosses {

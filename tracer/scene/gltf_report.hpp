@@ -1,18 +1,19 @@
 // How the glTF reader speaks to the user: every message is one line that begins with the file's path.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 
 #include "tracer/scene/scene.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
 
-/// `text` with every control character replaced, so that a name found in a file cannot break a message into lines.
-std::string one_line(std::string text);
-
 class GltfReport {
 public:
-    GltfReport(std::string path, const Warn& warn) : path_(std::move(path)), warn_(warn) {}
+    GltfReport(std::string path, const Warn& warn)
+        : path_(std::move(path)), warn_(warn), memory_(std::make_shared<MemoryBudget>()) {}
 
     const std::string& path() const { return path_; }
 
@@ -22,9 +23,15 @@ public:
 
     void warning(const std::string& text) const;
 
+    /// What the file, with all that it refers to, has made us allocate; becomes the scene's.
+    const std::shared_ptr<MemoryBudget>& memory() const { return memory_; }
+    /// Before `bytes` are allocated. Throws Error as MemoryBudget::charge() does.
+    void charge(std::uint64_t bytes, const std::string& what) const;
+
 private:
     std::string path_;
     const Warn& warn_;
+    std::shared_ptr<MemoryBudget> memory_;
 };
 
 }  // namespace raycache::tracer

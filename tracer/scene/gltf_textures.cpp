@@ -5,6 +5,8 @@
 
 #include "tracer/scene/gltf_uri.hpp"
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
+#include "traces/regular_file.hpp"
 
 namespace raycache::tracer {
 
@@ -21,33 +23,38 @@ void read_image(const GltfDocument& document, const GltfImage& image, GltfImageB
     }
     if (!image.uri) throw Error("it has neither a URI nor a buffer view");
     if (is_data_uri(*image.uri)) {
+        report.charge(image.uri->size() / 4 * 3, result.name);
         auto bytes = decode_data_uri(*image.uri);
         if (!bytes) throw Error("its data: URI is not base64");
         result.owned = std::move(*bytes);
     } else {
         const auto path = resolve_relative_uri(report.path(), *image.uri);
         if (!path) throw Error("its URI is not a relative path");
-        result.owned = read_regular_file(*path, "image");
+        result.owned = read_regular_file(*path, "image", report.memory().get());
         result.file = *path;
     }
     result.bytes = result.owned;
 }
 
-/// Leaves an image without bytes once those before it fill the budget.
-void enforce_budget(std::vector<GltfImageBytes>& images) {
+/// Leaves an image without bytes where its header is bad, and once those before it fill what a picture may take.
+void enforce_budget(std::vector<GltfImageBytes>& images, const GltfReport& report) {
     std::uint64_t texels = 0;
     for (GltfImageBytes& image : images) {
         if (image.bytes.empty()) continue;
+        std::uint64_t more = 0;
         try {
             const ImageSize size = image_size(image.bytes, image.name);
-            texels += std::uint64_t{size.width} * size.height;
-            if (texels > max_total_texels)
+            more = std::uint64_t{size.width} * size.height;
+            if (texels + more > max_total_texels)
                 throw Error(
                     fmt::format("{}: textures need more than {} texels; reduce them", image.name, max_total_texels));
         } catch (const Error& e) {
             image.problem = e.what();
             image.bytes = {};
+            continue;
         }
+        texels += more;
+        report.charge(4 * more, fmt::format("texels of {}", image.name));
     }
 }
 
@@ -58,15 +65,17 @@ std::vector<GltfImageBytes> read_gltf_images(const GltfDocument& document, const
     std::vector<GltfImageBytes> result(images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
         const GltfImage& image = document.images[static_cast<std::size_t>(images[i])];
-        result[i].name = one_line(image.name);
+        result[i].name = printable_line(image.name);
         try {
             read_image(document, image, result[i], report);
             if (result[i].bytes.empty()) throw Error("it is empty");
+        } catch (const MemoryError&) {
+            throw;
         } catch (const Error& e) {
             result[i].problem = e.what();
         }
     }
-    enforce_budget(result);
+    enforce_budget(result, report);
     return result;
 }
 

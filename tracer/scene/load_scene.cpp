@@ -5,11 +5,14 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "tracer/scene/gltf_cameras.hpp"
 #include "tracer/scene/gltf_report.hpp"
 #include "tracer/scene/scene.hpp"
 #include "traces/error.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::tracer {
 
@@ -32,21 +35,26 @@ Scene build(const BuiltinScene& builtin, std::uint64_t detail) {
     if (detail < builtin.min_detail || detail > builtin.max_detail)
         throw UsageError(fmt::format("scene {}: expected a detail from {} to {} triangles, found {}; choose one within",
                                      builtin.name, builtin.min_detail, builtin.max_detail, detail));
-    return builtin.build(detail);
+    constexpr std::uint64_t triangle_bytes = 200;  // with its share of vertices, while it is built
+    auto memory = std::make_shared<MemoryBudget>();
+    memory->charge(detail * triangle_bytes, "scene " + builtin.name, fmt::format("its {} triangles", detail));
+    Scene scene = builtin.build(detail);
+    scene.memory = std::move(memory);
+    return scene;
 }
 
 Scene load_file(const SceneRequest& request, const Warn& warn) {
     std::error_code error;
     if (!std::filesystem::exists(request.source, error))
-        throw UsageError(
-            one_line(fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
-                                 "the file does not exist; check the path",
-                                 request.source, builtin_names())));
+        throw UsageError(printable_line(
+            fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
+                        "the file does not exist; check the path",
+                        request.source, builtin_names())));
     if (request.detail != 0)
         throw UsageError(
-            one_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
-                                 "one; leave it out",
-                                 request.source, request.detail, builtin_names())));
+            printable_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
+                                       "one; leave it out",
+                                       request.source, request.detail, builtin_names())));
     return load_gltf(request.source, warn);
 }
 
@@ -70,7 +78,7 @@ void light_file(Scene& scene, const SceneRequest& request, const Warn& warn) {
     if (emitter) return;
     scene.sun = Sun{normalize(day_sun_direction), day_sun_irradiance};
     if (sky == SceneRequest::Sky::automatic && warn)
-        warn(one_line(fmt::format("{}: the file has no light; a sky and a sun are added", request.source)));
+        warn(printable_line(fmt::format("{}: the file has no light; a sky and a sun are added", request.source)));
 }
 
 std::size_t find_camera(const Scene& scene, const std::string& wanted) {
@@ -85,9 +93,9 @@ std::size_t find_camera(const Scene& scene, const std::string& wanted) {
     std::string valid;
     for (const Camera& camera : scene.cameras) valid += (valid.empty() ? "" : ", ") + camera.name;
     throw UsageError(
-        one_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
-                             "found no such one; choose one of these",
-                             wanted, scene.name, valid, scene.cameras.size() - 1)));
+        printable_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
+                                   "found no such one; choose one of these",
+                                   wanted, scene.name, valid, scene.cameras.size() - 1)));
 }
 
 std::string text(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -98,12 +106,19 @@ void aim(Camera& camera, Vec3 eye, Vec3 look_at) {
             fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
                         "give three numbers for each",
                         text(eye), text(look_at)));
+    for (const auto& [point, option] : {std::pair{eye, "--eye"}, std::pair{look_at, "--look-at"}})
+        if (!is_usable_position(point))
+            throw UsageError(
+                fmt::format("{} {}: expected a point within {:g} m of the origin on each axis, found one "
+                            "beyond; move it closer",
+                            option, text(point), max_coordinate));
     const double x = double{look_at.x} - eye.x, y = double{look_at.y} - eye.y, z = double{look_at.z} - eye.z;
     const double distance = std::hypot(x, y, z);
     if (!(distance > 0))
         throw UsageError(
             fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one", text(eye)));
     camera.name = "eye";
+    camera.problem.clear();
     camera.eye = eye;
     camera.forward = {static_cast<float>(x / distance), static_cast<float>(y / distance),
                       static_cast<float>(z / distance)};
@@ -130,6 +145,11 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
                             fov));
         scene.cameras.front().vertical_fov = fov;
     }
+    const Camera& camera = scene.cameras.front();
+    if (!camera.problem.empty())
+        throw Error(printable_line(
+            fmt::format("{}: camera {}: {}; move it, or choose another place with --camera or with --eye and --look-at",
+                        request.source, camera.name, camera.problem)));
 }
 
 }  // namespace

@@ -2,7 +2,13 @@
 
 #include <cmath>
 
+#include "traces/printable.hpp"
+
 namespace raycache::tracer {
+
+void Scene::charge(std::uint64_t bytes, const char* what) const {
+    if (memory) memory->charge(bytes, printable_line(name), what);
+}
 
 Box Scene::bounds() const {
     Box box;

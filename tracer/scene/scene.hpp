@@ -2,19 +2,30 @@
 // Metres, Y up, right-handed; colours are linear Rec. 709.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tracer/image.hpp"
 #include "tracer/vec.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
 
 /// Called once per warning, one line without a newline. The program prints it on stderr.
 using Warn = std::function<void(const std::string&)>;
+
+/// Metres from the origin, on each axis. What lies further is refused: squared distances would overflow a float, and
+/// Embree takes no ray from there.
+inline constexpr float max_coordinate = 1e18F;
+
+inline bool is_usable_position(Vec3 p) {
+    return std::abs(p.x) <= max_coordinate && std::abs(p.y) <= max_coordinate && std::abs(p.z) <= max_coordinate;
+}
 
 struct Material {
     std::string name;
@@ -48,6 +59,7 @@ struct Camera {
     Vec3 forward{0, 0, -1};   ///< unit
     Vec3 up{0, 1, 0};         ///< unit, orthogonal to forward
     float vertical_fov = 45;  ///< degrees, in (0, 180)
+    std::string problem;      ///< why no picture can be taken with it; empty where one can
 };
 
 /// A directional light of finite size.
@@ -75,8 +87,12 @@ struct Scene {
     /// Unit of the distance that rays keep from the surface they leave (Surface::leave). 1 where the largest extent is
     /// 1 to 256, else a power of two in proportion to it. PreparedScene sets it.
     float offset_scale = 1;
+    /// Charged with what the scene's source made us allocate; for what is built on it. May be missing.
+    std::shared_ptr<MemoryBudget> memory;
 
     std::size_t triangle_count() const { return material_of.size(); }
+    /// Throws Error where the budget has no room for `bytes` more. To be called before they are allocated for `what`.
+    void charge(std::uint64_t bytes, const char* what) const;
     Box bounds() const;
     /// `offset_scale` of a scene with these bounds.
     static float offset_scale_of(const Box& bounds);

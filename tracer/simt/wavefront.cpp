@@ -1,21 +1,32 @@
 #include "tracer/simt/wavefront.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
+
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
 namespace {
 
 using Stage = WavefrontKernel::Stage;
 using traces::RayType;
+constexpr std::size_t lanes = traces::warp_lanes;
 
 RayType type_of(std::uint32_t vertex) { return vertex == 0 ? RayType::camera : RayType::bounce; }
 
 template <class Body>
 void for_each(std::uint32_t mask, Body body) {
     for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
+}
+
+/// So many warps, if the paths of a picture as large leave memory for other things.
+std::size_t affordable(std::size_t warps) {
+    constexpr std::uint64_t bytes = sizeof(PathLanes) + sizeof(traces::WarpTrace) + 5 * lanes * sizeof(std::uint32_t);
+    MemoryBudget().check(warps * bytes, "a wavefront", fmt::format("its {} paths", warps * lanes));
+    return warps;
 }
 
 /// The lanes of `mask` each access one element of a region: element(lane).
@@ -53,7 +64,7 @@ Wavefront::Wavefront(const std::vector<WavefrontKernel>& kernels, const Wavefron
     : kernels_(kernels),
       buffers_(buffers),
       order_(order),
-      state_(buffers.slots / lanes),
+      state_(affordable(buffers.slots / lanes)),
       camera_masks_(state_.size()),
       shaded_(state_.size()) {
     std::array<PathLane, lanes> of_warp;

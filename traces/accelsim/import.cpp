@@ -10,6 +10,7 @@
 #include "traces/accelsim/address_regions.hpp"
 #include "traces/error.hpp"
 #include "traces/format.hpp"
+#include "traces/memory_budget.hpp"
 #include "traces/writer.hpp"
 
 namespace raycache::traces {
@@ -38,14 +39,28 @@ bool continues(const WarpLoads& warp, const GlobalLoad& load) {
                       [&](std::uint64_t now, std::uint64_t before) { return now == before + last.bytes; });
 }
 
-void add(std::vector<WarpLoads>& warps, std::uint64_t number, const GlobalLoad& load, bool fuse) {
-    if (number >= warps.size()) warps.resize(number + 1);
+/// Makes room for so many warps.
+void grow(std::vector<WarpLoads>& warps, std::uint64_t count, MemoryBudget& budget, const std::string& file) {
+    if (count <= warps.size()) return;
+    if (count > warps.capacity()) {
+        const std::uint64_t room = std::max<std::uint64_t>(count, 2 * warps.capacity());
+        budget.charge((room - warps.capacity()) * sizeof(WarpLoads), file, "its warps");
+        warps.reserve(room);
+    }
+    warps.resize(count);
+}
+
+void add(std::vector<WarpLoads>& warps, std::uint64_t number, const GlobalLoad& load, bool fuse, MemoryBudget& budget,
+         const std::string& file) {
+    grow(warps, number + 1, budget, file);
     WarpLoads& warp = warps[number];
     if (fuse && continues(warp, load)) {
         warp.accesses.back().bytes += load.bytes;
         warp.accesses.back().pc = load.pc;
         return;
     }
+    // Vectors grow by doubling.
+    budget.charge(2 * (sizeof(Access) + load.addresses.size() * sizeof(std::uint64_t)), file, "its loads");
     warp.accesses.push_back({load.mask, load.bytes, load.pc});
     warp.addresses.insert(warp.addresses.end(), load.addresses.begin(), load.addresses.end());
 }
@@ -56,7 +71,10 @@ struct Layout {
     std::vector<Region> regions;
 };
 
-Layout lay_out(const std::vector<WarpLoads>& warps, const std::string& file) {
+Layout lay_out(const std::vector<WarpLoads>& warps, MemoryBudget& budget, const std::string& file) {
+    std::uint64_t count = 0;
+    for (const WarpLoads& warp : warps) count += warp.addresses.size();
+    const MemoryHold hold(budget, 2 * count * sizeof(std::uint64_t), file, "addresses of its loads");
     std::map<std::uint32_t, std::vector<std::uint64_t>> addresses;
     for (const WarpLoads& warp : warps) {
         const std::uint64_t* at = warp.addresses.data();
@@ -142,20 +160,21 @@ void write(const Header& header, const std::vector<WarpLoads>& loads, const Layo
 }  // namespace
 
 TracegKernel import_traceg(const std::string& input, const std::string& output, const ImportSettings& settings) {
+    MemoryBudget budget;
     std::vector<WarpLoads> warps;
     TracegKernel kernel = parse_traceg(input, [&](std::uint64_t warp, GlobalLoad& load) {
         if (warp >= format::max_warps_per_launch)
             throw Error(fmt::format("{}: expected at most 2^26 warps, found more; trace a smaller grid", input));
-        add(warps, warp, load, settings.fuse);
+        add(warps, warp, load, settings.fuse, budget, input);
     });
     if (kernel.loads == 0)
         throw Error(fmt::format("{}: expected global loads (LDG), found none; trace a kernel that has some", input));
     const std::uint64_t all = kernel.ctas * kernel.warps_per_cta;
     if (all > format::max_warps_per_launch)
         throw Error(fmt::format("{}: expected at most 2^26 warps, found {}; trace a smaller grid", input, all));
-    warps.resize(all);
+    grow(warps, all, budget, input);
 
-    const Layout layout = lay_out(warps, input);
+    const Layout layout = lay_out(warps, budget, input);
     Header header;
     header.regions = layout.regions;
     header.launches = {0};

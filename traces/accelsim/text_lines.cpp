@@ -8,6 +8,8 @@
 
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/memory_budget.hpp"
+#include "traces/printable.hpp"
 
 namespace raycache::traces {
 
@@ -18,11 +20,8 @@ constexpr std::uint64_t most_memory = std::uint64_t{1} << 30;
 constexpr std::uint8_t xz_magic[] = {0xfd, '7', 'z', 'X', 'Z', 0};
 
 /// One line of a message, whatever was in the file.
-std::string printable(std::string_view text) {
-    std::string out(text.substr(0, 60));
-    std::replace_if(
-        out.begin(), out.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
-    return text.size() > 60 ? out + "…" : out;
+std::string excerpt(std::string_view text) {
+    return printable_line(text.substr(0, 60)) + (text.size() > 60 ? "…" : "");
 }
 }  // namespace
 
@@ -30,7 +29,8 @@ struct TextLines::Impl {
     explicit Impl(const std::string& name) : path(name), file(name) {
         file.read(0, std::min<std::uint64_t>(file.bytes(), sizeof xz_magic), raw);
         compressed = std::equal(raw.begin(), raw.end(), std::begin(xz_magic), std::end(xz_magic));
-        if (compressed && lzma_stream_decoder(&stream, most_memory, LZMA_CONCATENATED) != LZMA_OK)
+        if (compressed &&
+            lzma_stream_decoder(&stream, std::min(most_memory, memory_limit()), LZMA_CONCATENATED) != LZMA_OK)
             throw std::bad_alloc();
         raw.clear();
     }
@@ -55,6 +55,12 @@ struct TextLines::Impl {
             const lzma_ret result = lzma_code(&stream, offset == file.bytes() ? LZMA_FINISH : LZMA_RUN);
             text.resize(text.size() - stream.avail_out);
             ended = result == LZMA_STREAM_END;
+            if (result == LZMA_MEMLIMIT_ERROR)
+                throw Error(
+                    fmt::format("{}: offset {}: expected xz data of a dictionary that fits {}, found {}; compress "
+                                "the trace again with a smaller one, or allow more with --memory-limit",
+                                path, offset - stream.avail_in, size_text(lzma_memlimit_get(&stream)),
+                                size_text(lzma_memusage(&stream))));
             if (!ended && result != LZMA_OK)
                 throw Error(fmt::format("{}: offset {}: expected xz data, found {}; copy the file again", path,
                                         offset - stream.avail_in,
@@ -116,7 +122,7 @@ bool TextLines::next(std::string_view& line) {
 
 void TextLines::refuse(std::string_view what, std::string_view expected, std::string_view found) const {
     throw Error(fmt::format("{}: line {}: {}: expected {}, found {}; write the trace again", impl_->path, impl_->line,
-                            what, expected, printable(found)));
+                            what, expected, excerpt(found)));
 }
 
 }  // namespace raycache::traces

@@ -129,9 +129,19 @@ private:
                 kernel_.bypassing += found.opcode.find(".STRONG.") != std::string_view::npos;
                 load_(warp, load);
             } else if (found.has_addresses) {
-                ++kernel_.left_out[std::string(found.opcode.substr(0, found.opcode.find('.')))];
+                leave_out(found.opcode.substr(0, std::min<std::size_t>(found.opcode.find('.'), 16)));
             }
         }
+    }
+
+    /// No instruction set has so many: a file without end of made up ones must not fill the memory.
+    void leave_out(std::string_view opcode) {
+        constexpr std::size_t most = 1000;
+        const auto known = kernel_.left_out.find(std::string(opcode));
+        if (known != kernel_.left_out.end())
+            ++known->second;
+        else
+            ++kernel_.left_out[kernel_.left_out.size() < most ? std::string(opcode) : "others"];
     }
 
     TextLines lines_;

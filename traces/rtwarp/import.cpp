@@ -15,6 +15,7 @@
 #include "traces/error.hpp"
 #include "traces/format.hpp"
 #include "traces/input_file.hpp"
+#include "traces/memory_budget.hpp"
 #include "traces/writer.hpp"
 
 namespace raycache::traces {
@@ -29,7 +30,7 @@ class Input {
 public:
     explicit Input(const std::string& path)
         : path_(path), file_(path, std::ios::binary), packed_(ZSTD_DStreamInSize()), stream_(ZSTD_createDStream()) {
-        if (!file_ || std::filesystem::is_directory(path))
+        if (!file_ || !std::filesystem::is_regular_file(path))
             throw Error(fmt::format("{}: expected an RTWARP01 trace, found no file to read; check the path", path));
         std::uint32_t start = 0;
         file_.read(reinterpret_cast<char*>(&start), sizeof start);
@@ -137,8 +138,10 @@ Header read_header(Input& in) {
     return header;
 }
 
-WarpTrace read_warp(Input& in, std::uint32_t number, Header& header) {
+WarpTrace read_warp(Input& in, std::uint32_t number, Header& header, MemoryBudget& budget, const std::string& file) {
+    constexpr const char* what = "its records";
     WarpTrace warp;
+    budget.charge(2 * sizeof(WarpTrace), file, what);  // the list of warps grows by doubling
     warp.warp = number;
     const auto records = in.take<std::uint32_t>();
     in.take<std::uint32_t>();  // bytes of them
@@ -150,6 +153,7 @@ WarpTrace read_warp(Input& in, std::uint32_t number, Header& header) {
         record.bounce = tag & 3;
         record.ray = tag & 4 ? RayType::shadow : tag & 3 ? RayType::bounce : RayType::camera;
         record.region = tag & 0x80 ? ray_start : tag & 0x40 ? 1 : 0;
+        budget.charge(sizeof(Record) + (record.is_access() ? record.lanes() * sizeof(std::uint32_t) : 0), file, what);
         warp.records.push_back(record);
         if (!record.is_access()) continue;
         Region& region = header.regions[record.region];
@@ -161,6 +165,8 @@ WarpTrace read_warp(Input& in, std::uint32_t number, Header& header) {
             region.count = std::max(region.count, element + 1);
         }
     }
+    warp.records.shrink_to_fit();
+    warp.elements.shrink_to_fit();
     return warp;
 }
 
@@ -208,8 +214,10 @@ void import_rtwarp(const std::string& input, const std::string& output, const st
     header.provenance.command = command;
     // The same for all strategies of one picture, so that they can be compared.
     header.provenance.scene = fmt::format("rtwarp {}x{}", header.provenance.width, header.provenance.height);
+    MemoryBudget budget;
     std::vector<WarpTrace> warps;
-    for (std::uint32_t w = 0; w < header.warps_per_launch; ++w) warps.push_back(read_warp(in, w, header));
+    for (std::uint32_t w = 0; w < header.warps_per_launch; ++w)
+        warps.push_back(read_warp(in, w, header, budget, input));
     for (std::uint8_t region = 0; region < 2; ++region) align(header.regions[region], warps, region, in);
     Writer writer(output, header);
     for (std::size_t w = 0; w < warps.size(); w += warps_per_block)
