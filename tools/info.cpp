@@ -55,7 +55,8 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
     const auto line = [&](const char* name, const std::string& value) {
         constexpr std::size_t title = 18;
         if (!value.empty())
-            out += cachesim::break_lines(fmt::format("{:<{}}{}\n", name, title, printable_line(value)), cachesim::text_width, title);
+            out += cachesim::break_lines(fmt::format("{:<{}}{}\n", name, title, printable_line(value)),
+                                         cachesim::text_width, title);
     };
     const auto count = [&](const char* name, std::uint64_t value) { line(name, fmt::format("{}", value)); };
     line("program", p.program);

@@ -29,7 +29,11 @@ std::uint64_t parse_size(const std::string& text, const std::string& option) {
 }
 
 void add_memory_limit(CLI::App& app) {
-    for (CLI::App* command : app.get_subcommands({}))
+    const auto reads = [](CLI::App* command) {
+        const std::string& name = command->get_name();
+        return name != "list" && name != "completion" && name != "samples";
+    };
+    for (CLI::App* command : app.get_subcommands(reads))
         command
             ->add_option_function<std::string>(
                 "--memory-limit", [](const std::string& text) { set_memory_limit(parse_size(text, "--memory-limit")); },

@@ -11,7 +11,7 @@ namespace raycache::tools {
 /// names the option.
 std::uint64_t parse_size(const std::string& text, const std::string& option);
 
-/// Gives every subcommand the option; it holds for all inputs of a run.
+/// Gives every subcommand that reads inputs the option; it holds for all inputs of a run.
 void add_memory_limit(CLI::App&);
 
 }  // namespace raycache::tools

@@ -133,7 +133,7 @@ public:
             const auto string = node.as_string();
             if (!string)
                 reader_->fail(line_of(node), prefix_ + key, fmt::format("expected a text, found {}", type_name(node)));
-            return reader_->values_.back().value = one_line(string->get());
+            return reader_->values_.back().value = printable_line(string->get());
         }
 
         template <class Enum, std::size_t n>

@@ -144,7 +144,7 @@ class Names(HostileTest):
                 result = self.run_program(*command)
                 self.assert_harmless(result.stdout, result)
                 self.assert_harmless(result.stderr.encode(), result)
-        scene = self.succeeds("info", "a.rct", "--json").json["scene"]
+        scene = self.succeeds("info", "a.rct", "--json").json["traces"][0]["scene"]
         self.assertEqual(scene, EVIL + ".gltf")
 
     def test_a_name_with_line_breaks_does_not_break_a_table(self):

@@ -1,6 +1,8 @@
 // Embree asserts what it is given; nothing that a scene or a camera can cause may reach such an assert.
 #include <catch2/catch.hpp>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "tracer/bvh/embree_scene.hpp"
 #include "tracer/paths/camera_rays.hpp"
@@ -22,7 +24,7 @@ Scene triangle(float size) {
     return scene;
 }
 
-constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -32,14 +34,15 @@ TEST_CASE("rays that Embree does not take meet nothing") {
     const Ray good{{0, 0, 1}, {0, 0, -1}};
     CHECK(embree.intersect(good).found());
     CHECK(embree.occluded(good));
-    for (const float bad : {nan, infinity, -infinity, 1.9e18F, -3e38F}) {
+    for (const float bad : {none, infinity, -infinity, 1.9e18F, -3e38F}) {
         for (Ray ray : {Ray{{bad, 0, 1}, {0, 0, -1}}, Ray{{0, 0, bad}, {0, 0, -1}}, Ray{{0, 0, 1}, {0, bad, -1}},
                         Ray{{0, 0, 1}, {0, 0, bad}}}) {
             CHECK_FALSE(embree.intersect(ray).found());
             CHECK_FALSE(embree.occluded(ray));
         }
     }
-    for (const auto& [t_min, t_max] : {std::pair{nan, infinity}, {0.0F, nan}, {-1.0F, infinity}, {2.0F, 1.0F}}) {
+    const std::vector<std::pair<float, float>> intervals{{none, infinity}, {0, none}, {-1, infinity}, {2, 1}};
+    for (const auto& [t_min, t_max] : intervals) {
         const Ray ray{{0, 0, 1}, {0, 0, -1}, t_min, t_max};
         CHECK_FALSE(embree.intersect(ray).found());
         CHECK_FALSE(embree.occluded(ray));

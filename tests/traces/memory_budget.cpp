@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 
 #include "tests/traces/files.hpp"
-#include "tests/traces/samples.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/reader.hpp"
 #include "traces/rtwarp/import.hpp"
