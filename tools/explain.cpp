@@ -12,6 +12,7 @@
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/options.hpp"
+#include "tools/width_option.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -27,6 +28,7 @@ struct Options {
     GpuOptions gpu;
     std::string by = "none", heat_map;
     JsonOption json;
+    WidthOption width;
     bool counts_only = false;
     ThreadOptions threads;
 };
@@ -53,7 +55,7 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
     JsonSubject subject{{gpu}, {}};
     for (std::size_t i = 0; i < 2; ++i)
         subject.traces.push_back(settings_json(*sources[i].header, o.traces.empty() ? "" : o.traces[i]));
-    deliveries.attempt([&] { print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e)); });
+    deliveries.attempt([&] { print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e, o.width.columns())); });
     if (request.pixels)
         write_heat_maps(
             o.heat_map,
@@ -119,9 +121,10 @@ void add_explain(CLI::App& app) {
         ->check(CLI::IsMember({"none", "bounce", "ray"}))
         ->capture_default_str();
     o->json.add(*command);
+    o->width.add(*command);
     command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
     command->add_option("--heatmap", o->heat_map,
-                        "FILE.exr: DRAM bytes, L1 miss rate and active lanes of each pixel; FILE.png shows them");
+                        "FILE.exr: DRAM bytes, L1 visit miss rate and active lanes of each pixel; FILE.png shows them");
     o->scene.add(*command, false);
     command->add_option("--strategy", o->strategies, "with --scene: two decorrelations, BASE,OTHER")
         ->delimiter(',')

@@ -83,7 +83,7 @@ void write_heat_maps(const std::string& exr, const std::string& title, const Hea
     std::vector<tracer::Channel> channels;
     for (const auto& [layer, map] : {std::pair{"base", &base}, std::pair{"other", &other}}) {
         channels.push_back({fmt::format("{}.DRAM bytes", layer), map->dram_bytes});
-        channels.push_back({fmt::format("{}.L1 miss rate", layer), map->l1_miss_rate});
+        channels.push_back({fmt::format("{}.L1 visit miss rate", layer), map->l1_miss_rate});
         channels.push_back({fmt::format("{}.active lanes", layer), map->active_lanes});
     }
     const auto files = heat_map_files(exr);

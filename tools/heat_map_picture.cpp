@@ -32,7 +32,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 std::array<Quantity, 3> quantities_of(unsigned lanes) {
     const char *less = "blue: less, better", *more = "red: more, better";
     return {{{"DRAM bytes", "bytes per pixel and sample", "bytes", less, &HeatMap::dram_bytes, 1, 0, unlimited},
-             {"L1 miss rate", "% of sectors asked for", "percentage points", less, &HeatMap::l1_miss_rate, 100, 0, 100},
+             {"L1 visit miss rate", "% of distinct sectors of visits", "percentage points", less,
+              &HeatMap::l1_miss_rate, 100, 0, 100},
              {"active lanes", fmt::format("lanes per warp access, of {}", lanes), "lanes", more, &HeatMap::active_lanes,
               1, 1, static_cast<double>(lanes)}}};
 }

@@ -80,6 +80,35 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
     return series;
 }
 
+/// A functional and a timed replay, fed alike.
+class BothReplays {
+public:
+    BothReplays(const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample)
+        : counted_(gpu, regions, sample), timed_(gpu, regions, sample) {}
+
+    void push(const std::shared_ptr<const traces::WarpTrace>& warp) {
+        counted_.push(warp);
+        timed_.push(warp);
+    }
+    void end_kernel() {
+        counted_.end_kernel();
+        timed_.end_kernel();
+    }
+    std::pair<cachesim::LaunchStatistics, cachesim::TimedStatistics> finish() {
+        return {counted_.finish(), timed_.finish()};
+    }
+
+private:
+    cachesim::Replay counted_;
+    cachesim::TimedReplay timed_;
+};
+
+/// A series of both.
+struct BothSeries : cachesim::Series {
+    std::string no_time;
+    std::vector<std::pair<cachesim::LaunchStatistics, cachesim::TimedStatistics>> launches;
+};
+
 }  // namespace
 
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
@@ -97,6 +126,32 @@ std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&
         [&](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::TimedReplay(gpu, regions, sample, ideal);
         });
+}
+
+Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
+                  Progress& progress) {
+    Predicted all;
+    for (BothSeries& both :
+         replay_with<BothSeries>(sources, gpus, progress,
+                                 [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
+                                    std::uint32_t sample) { return BothReplays(gpu, regions, sample); })) {
+        cachesim::Series& counted = all.traffic.emplace_back(both);
+        cachesim::TimedSeries& timed = all.times.emplace_back();
+        timed.scene = both.scene;
+        timed.strategy = both.strategy;
+        timed.sequence = both.sequence;
+        timed.parameters = both.parameters;
+        timed.thread_map = both.thread_map;
+        timed.gpu = both.gpu;
+        timed.spp = both.spp;
+        timed.no_time = both.no_time;
+        timed.sector_bytes = both.sector_bytes;
+        for (auto& [counts, times] : both.launches) {
+            counted.launches.push_back(std::move(counts));
+            timed.launches.push_back(times);
+        }
+    }
+    return all;
 }
 
 }  // namespace raycache::tools

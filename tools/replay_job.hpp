@@ -17,7 +17,14 @@ namespace raycache::tools {
 /// does.
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Progress&);
 
-/// The same in time.
+/// Both replays of the same warps, series by series in the same order.
+struct Predicted {
+    std::vector<cachesim::TimedSeries> times;
+    std::vector<cachesim::Series> traffic;
+};
+Predicted predict(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Progress&);
+
+/// In time alone.
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
                                                 Progress&, const cachesim::Idealised& = {});
 

@@ -2,39 +2,25 @@
 """Turns the JSON of `raycache compare` into one HTML page: what was found, charts, table, what the words mean.
 
 Example:
-  raycache compare --scene courtyard --spp 16,256,1024 --gpu gtx-980-ti --save out/comparison
-  tools/report.py out/comparison.json --picture out/courtyard.png -o out/report.html
+  raycache compare --scene courtyard --spp 16,256,1024 --gpu gtx-980-ti --timed --save out/comparison
+  raycache quality courtyard --spp 1024 --json > out/quality.json
+  tools/report.py out/comparison.json --quality out/quality.json --picture out/courtyard.png -o out/report.html
 """
 import argparse
 import base64
 import html
-import io
 import json
-import math
 import pathlib
 import sys
 
-import matplotlib
+sys.dont_write_bytecode = True
+import report_charts as charts  # noqa: E402
+from files import read_text, whole_file  # noqa: E402
+from report_numbers import (BadInput, Comparison, change, distinct, fixed, interval, is_certain, percent,  # noqa: E402
+                            present)
 
-from files import read_text, whole_file
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
-
-COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#999999"]  # Okabe & Ito: for all eyes
 SCHEMA = 1
-LESS, MORE = "#009e73", "#d55e00"
-
-FACTORS = [  # key in the JSON, name, what it says
-    ("work", "work", "BVH nodes and triangles visited per ray"),
-    ("simt_efficiency", "SIMT efficiency", "warp accesses per visit: fewer if more lanes of a warp work at once"),
-    ("coalescing", "coalescing", "32-byte sectors per warp access: fewer if the lanes read the same or neighbouring places"),
-    ("l1_locality", "L1 locality", "share of the sectors that L1 does not have"),
-    ("l2_locality", "L2 locality", "share of those that L2 does not have either"),
-    ("l3_locality", "L3 locality", "share of those that L3 does not have either"),
-]
-
-COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Those of an L3 show only where a GPU has one
+COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Those that no row has are left out
     ("rays", lambda r: f"{r['totals']['rays']:,}".replace(",", "\u202f"),
      "camera, shadow and bounce rays traced, over all traced sample indices"),
     ("steps\nper ray", lambda r: fixed(r["steps_per_ray"], 1),
@@ -43,251 +29,194 @@ COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Thos
      "of the 32 lanes of a warp, how many take part in an average access; 32 is best"),
     ("sectors\nper access", lambda r: fixed(r["sectors_per_access"], 2),
      "different 32-byte pieces of memory that one warp access touches; lower is better"),
-    ("L1\nhits", lambda r: percent(r["l1_hit_rate"]), "share of those sectors found in the first-level cache of the multiprocessor"),
-    ("L2\nhits", lambda r: percent(r["l2_hit_rate"]), "share of the rest found in the second-level cache, on a GPU that of all multiprocessors"),
-    ("L3\nhits", lambda r: percent(r["l3_hit_rate"]), "share of the rest found in the third-level cache, which all share"),
-    ("L2\u2192L1\nB/ray", lambda r: interval(r["l2_bytes_per_ray"]),
-     "bytes per ray that L1 did not have and asked L2 for"),
-    ("L3\u2192L2\nB/ray", lambda r: interval(r["l3_bytes_per_ray"]),
-     "bytes per ray that L2 did not have and asked L3 for"),
-    ("DRAM\nB/ray", lambda r: interval(r["dram_bytes_per_ray"]),
-     "bytes per ray that no cache had and that came from memory"),
+    ("L1\nhits", lambda r: percent(r["l1_hit_rate"]),
+     "share of the requests of all loads that the first-level cache of the multiprocessor answers, as Nsight Compute counts "
+     "(l1tex__t_sector_hit_rate)"),
+    ("L2\nhits", lambda r: percent(r["l2_hit_rate"]),
+     "share of the rest found in the second-level cache, on a GPU that of all multiprocessors"),
+    ("L3\nhits", lambda r: percent(r.get("l3_hit_rate")), "share of the rest found in the third-level cache, which all share"),
+    ("L2\u2192L1\nB/ray", lambda r: interval(r["l2_bytes_per_ray"]), "bytes per ray that L1 did not have and asked L2 for"),
+    ("L3\u2192L2\nB/ray", lambda r: interval(r.get("l3_bytes_per_ray")), "bytes per ray that L2 did not have and asked L3 for"),
+    ("DRAM\nB/ray", lambda r: interval(r["dram_bytes_per_ray"]), "bytes per ray that no cache had and that came from memory"),
+    ("first\ntouches", lambda r: percent(r["dram_compulsory_share"]),
+     "share of the DRAM reads that no cache could have saved: sectors read for the first time. Each sample index begins with "
+     "cold caches, so at about 100 % DRAM bytes count what is touched, not how well caches are used"),
     ("L2\u2192L1\nratio", lambda r: interval(r["l2_bytes_ratio"]),
      "L2\u2192L1 bytes per ray over those of the baseline strategy, compared sample index by sample index; below 1 is better"),
-    ("DRAM\nratio", lambda r: interval(r["dram_bytes_ratio"]),
-     "the same for DRAM bytes per ray"),
+    ("DRAM\nratio", lambda r: interval(r["dram_bytes_ratio"]), "the same for DRAM bytes per ray"),
+    ("predicted\nspeed", lambda r: interval(r.get("speed_up"), 2),
+     "predicted time of the baseline over that of the row; above 1 is faster. A model's, not a measurement"),
 ]
 
 
-class BadInput(Exception):
-    pass
+def price(row, quality):
+    """What the row costs in picture quality: a sentence from `raycache quality`, or where to find it."""
+    label = html.escape(row["strategy"])
+    match = [q for q in (quality or {"rows": []})["rows"]
+             if (q["strategy"], q["sequence"], q["parameters"], q["spp"]) ==
+             (row["strategy"], row["sequence"], row["parameters"], row["spp"])]
+    if not match:
+        scene = html.escape(row["scene"])
+        return (f"What that costs in picture quality is not on this page: <code>raycache quality {scene} --strategy "
+                f"cranley-patterson,{label} --spp {row['spp']}</code> measures it, and <code>raycache sweep</code> weighs both.")
+    own, base = match[0], next((q for q in quality["rows"] if q["strategy"] == quality["baseline"] and q["spp"] == row["spp"]), None)
+    of_base = f" ({html.escape(quality['baseline'])}: {measured(base['r8'])})" if base else ""
+    return (f"The price is picture quality: the error that 8x8 pixels share, which eyes see as patches, is "
+            f"<b>{measured(own['r8'])}</b> times that of white noise{of_base}, at {measured(ratio_of(own))} times the RMSE "
+            f"(<code>raycache quality</code>, {quality['width']}x{quality['height']} pixels).")
 
 
-def present(estimate):
-    return estimate is not None and estimate["mean"] is not None
+def measured(value):
+    """A value of `raycache quality`: its mean with the 95 % half width, or its bound where the reference's noise hides it."""
+    if not isinstance(value, dict):
+        value = {"value": value}
+    if value.get("below") is not None:
+        return f"less than {value['below']:.2f}"
+    if value["value"] is None:
+        return "an unknown number of"
+    half = value.get("half_width_95")
+    return f"{value['value']:.2f}" + (f" \u00b1{half:.2f}" if half is not None else "")
 
 
-def fixed(estimate, digits):
-    return f"{estimate['mean']:.{digits}f}" if present(estimate) else "\u2013"
+def ratio_of(row):
+    """The RMSE over the baseline's."""
+    return {"value": row["rmse_ratio"], "half_width_95": row.get("rmse_ratio_half_width_95"), "below": row.get("rmse_ratio_below")}
 
 
-def percent(estimate):
-    return f"{100 * estimate['mean']:.1f} %" if present(estimate) else "\u2013"
+def headline(comparison, quality):
+    """The two sentences that the page begins with: the largest certain gain, and what it costs."""
+    def gain(row):
+        up = row.get("speed_up")
+        return (is_certain(up) and up["mean"] > 1, up["mean"] if is_certain(up) else 0, -row["l2_bytes_ratio"]["mean"])
 
+    def gains(row):
+        up = row.get("speed_up")
+        return is_certain(up) and up["mean"] > 1 or is_certain(row["l2_bytes_ratio"]) and row["l2_bytes_ratio"]["mean"] < 1
 
-def interval(estimate):
-    """About four digits, and the half width to the same place."""
-    if not present(estimate):
-        return "\u2013"
-    mean, half = estimate["mean"], estimate["half_width_95"]
-    digits = 0 if abs(mean) >= 1000 else 1 if abs(mean) >= 100 else 2 if abs(mean) >= 10 else 3
-    return f"{mean:.{digits}f}" + ("" if half is None else f" \u00b1{half:.{digits}f}")
-
-
-def half_width(estimate):
-    return (estimate["half_width_95"] or 0) if present(estimate) else 0
-
-
-def distinct(values):
-    return list(dict.fromkeys(values))
-
-
-class Comparison:
-    """The rows, sorted into settings (what the strategies share, except N) and labels (what tells strategies apart)."""
-
-    def __init__(self, report):
-        self.rows = report["rows"]
-        self.baseline = report["baseline"]
-        self.notes = report["notes"]
-        self.grouped = report["by"] != "none"
-        has_l3 = any("l3_hit_rate" in row for row in self.rows)
-        self.columns = [column for column in COLUMNS if has_l3 or not column[0].startswith("L3")]
-        self.factors = [factor for factor in FACTORS if has_l3 or factor[0] != "l3_locality"]
-        if not self.rows:
-            raise BadInput("no rows; run 'raycache compare' first")
-        fields = [f for f in ("scene", "sequence", "thread_map") if len({r[f] for r in self.rows}) > 1]
-        seen = [(self.setting(r), r["strategy"], r["spp"], r["group"]) for r in self.rows]
-        self.ambiguous = len(set(seen)) < len(seen)
-        self.settings = distinct(self.setting(r) for r in self.rows)
-        self.titles = {self.setting(r): ", ".join([r["gpu"], *(r[f] for f in fields)]) for r in self.rows}
-        self.labels = distinct(self.label(r) for r in self.rows)
-        self.colours = {label: COLOURS[i % len(COLOURS)] for i, label in enumerate(self.labels)}
-
-    @staticmethod
-    def setting(row):
-        return row["gpu"], row["scene"], row["sequence"], row["thread_map"]
-
-    def label(self, row):
-        extra = f" ({row['parameters']})" if self.ambiguous and row["parameters"] else ""
-        return row["strategy"] + extra
-
-    def of(self, setting):
-        return [r for r in self.rows if self.setting(r) == setting]
-
-
-def svg(figure):
-    buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None})
-    plt.close(figure)
-    return base64.b64encode(buffer.getvalue().encode()).decode()
-
-
-def traffic_chart(comparison, key, title):
-    """Bars of one quantity: a panel per setting, a group of bars per N, a bar per strategy."""
-    count = len(comparison.settings)
-    columns = min(2, count)
-    lines = math.ceil(count / columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(5 * columns, 3.1 * lines + 0.5), squeeze=False, layout="constrained")
-    for axis in axes.flat[count:]:
-        axis.set_visible(False)
-    for axis, setting in zip(axes.flat, comparison.settings):
-        rows = comparison.of(setting)
-        counts = sorted({r["spp"] for r in rows})
-        width = 0.8 / len(comparison.labels)
-        for i, label in enumerate(comparison.labels):
-            own = {r["spp"]: r[key] for r in rows if comparison.label(r) == label and present(r[key])}
-            axis.bar([counts.index(n) + (i - (len(comparison.labels) - 1) / 2) * width for n in own],
-                     [e["mean"] for e in own.values()], width * 0.92, color=comparison.colours[label], label=label,
-                     yerr=[half_width(e) for e in own.values()], capsize=3, error_kw={"elinewidth": 1})
-        axis.set_xticks(range(len(counts)), [f"N = {n}" for n in counts])
-        axis.set_title(comparison.titles[setting], fontsize=11)
-        axis.set_ylabel(f"{title}, bytes per ray")
-        axis.set_ylim(bottom=0)
-        axis.spines[["top", "right"]].set_visible(False)
-    return svg(figure)
-
-
-def legend(comparison):
-    return "<p class=legend>" + "".join(f'<span><i style="background:{colour}"></i>{html.escape(label)}</span>'
-                                        for label, colour in comparison.colours.items()) + "</p>"
-
-
-def factor_chart(comparison, setting):
-    """From 1 to the ratio in five steps: a panel per strategy and N. None where nothing is compared."""
-    rows = [r for r in comparison.of(setting) if r["factors"]]
+    rows = [r for r in comparison.compared() if gains(r)]
+    # Coherent is a bound, not a choice: all pixels share one sample.
+    rows = [r for r in rows if r["strategy"] != "coherent"] or rows
+    baseline = html.escape(comparison.baseline)
     if not rows:
-        return None
-    labels = [label for label in comparison.labels if any(comparison.label(r) == label for r in rows)]
-    counts = sorted({r["spp"] for r in rows})
-    figure, axes = plt.subplots(len(labels), len(counts), figsize=(3.3 * len(counts) + 1.2, 2.3 * len(labels) + 0.5),
-                                squeeze=False, sharex=True, sharey=True, layout="constrained")
-    names = [name for _, name, _ in comparison.factors] + ["DRAM ratio"]
-    for axis in axes.flat:
-        axis.set_visible(False)
-    for row in rows:
-        axis = axes[labels.index(comparison.label(row))][counts.index(row["spp"])]
-        axis.set_visible(True)
-        value = 1
-        for place, (key, _, _) in enumerate(comparison.factors):
-            factor = row["factors"][key]
-            axis.barh(place, value * factor - value, left=value, color=LESS if factor < 1 else MORE, height=0.7)
-            axis.plot([value * factor] * 2, [place - 0.35, place + 1.35], color="#666666", linewidth=0.8)
-            axis.annotate(f"\u00d7 {factor:.2f}", (max(value, value * factor), place), xytext=(4, 0),
-                          textcoords="offset points", va="center", fontsize=8)
-            value *= factor
-        axis.barh(len(comparison.factors), value - 1, left=1, color="#444444", height=0.7,
-                  xerr=half_width(row["dram_bytes_ratio"]), error_kw={"ecolor": "black", "capsize": 3})
-        axis.annotate(f"= {value:.2f}", (max(1, value + half_width(row["dram_bytes_ratio"])), len(comparison.factors)), xytext=(4, 0), textcoords="offset points",
-                      va="center", fontsize=8, weight="bold")
-        axis.axvline(1, color="black", linewidth=0.8)
-        axis.set_yticks(range(len(names)), names)
-        axis.set_title(f"{comparison.label(row)}, N = {row['spp']}", fontsize=10)
-        axis.spines[["top", "right"]].set_visible(False)
-    axes[0][0].invert_yaxis()
-    low, high = axes[0][0].get_xlim()
-    axes[0][0].set_xlim(max(0, low), high + (high - low) * 0.15)  # room for the numbers
-    figure.supxlabel(f"DRAM bytes per ray over those of {comparison.baseline}; left of 1 is better", fontsize=10)
-    return svg(figure)
-
-
-def difference(ratio, source, baseline):
-    """Such as "12 % less from DRAM than cranley-patterson (x 0.880 ±0.012)"."""
-    if abs(ratio["mean"] - 1) <= half_width(ratio):
-        return f"about as much from {source} as {baseline} (\u00d7 {interval(ratio)}; the interval includes 1)"
-    change = abs(1 - ratio["mean"]) * 100
-    return (f"<b>{change:.{0 if change >= 10 else 1}f} % {'less' if ratio['mean'] < 1 else 'more'} from {source}</b> than "
-            f"{baseline} (\u00d7 {interval(ratio)})")
+        return [f"No strategy gains anything over {baseline} for certain.",
+                "More sample indices (<code>--trace-samples</code>) or pixels (<code>--resolution</code>) narrow the intervals; what "
+                "each strategy costs in picture quality <code>raycache quality</code> measures."]
+    best = max(rows, key=gain)
+    name = f"<b>{html.escape(comparison.label(best))}</b> with N = {best['spp']}"
+    where = f"On a simulated {html.escape(comparison.titles[comparison.setting(best)])}, {name}"
+    ratio = best["l2_bytes_ratio"]
+    bytes_text = f"reads {change(ratio)} from L2" if is_certain(ratio) else ""
+    if gain(best)[0]:
+        first = (f"{where} is predicted to render <b>{interval(best['speed_up'], 2)} times as fast</b> as {baseline}" +
+                 (f", and {bytes_text}" if bytes_text else "") + ".")
+    else:
+        first = f"{where} <b>{bytes_text}</b> than {baseline}" + \
+            (", but that makes no certain difference in predicted time." if present(best.get("speed_up")) else ".")
+    return [first, price(best, quality)]
 
 
 def findings(comparison):
-    """One sentence per setting and strategy, at the largest N."""
-    sentences = []
-    baseline = html.escape(comparison.baseline)
-    for setting in comparison.settings:
-        rows = comparison.of(setting)
-        most = max(r["spp"] for r in rows)
-        for row in rows:
-            if row["spp"] == most and present(row["dram_bytes_ratio"]) and present(row["l2_bytes_ratio"]):
-                sentences.append(f"{html.escape(comparison.titles[setting])}, N = {most}: per ray, "
-                                 f"<b>{html.escape(comparison.label(row))}</b> reads "
-                                 f"{difference(row['l2_bytes_ratio'], 'L2', baseline)} and "
-                                 f"{difference(row['dram_bytes_ratio'], 'DRAM', 'it')}.")
-    return sentences
+    """The verdict on every strategy, as the program prints it."""
+    return [f"{html.escape(comparison.titles[comparison.setting(row)])}, {html.escape(comparison.label(row))}, "
+            f"N = {row['spp']}: {html.escape(row['verdict']['text'])}."
+            for row in comparison.rows if row["verdict"]]
 
 
-def table(comparison, setting):
+def table(comparison, columns, setting):
     group = [("group", lambda r: html.escape(r["group"]))] if comparison.grouped else []
     lead = [("strategy", lambda r: html.escape(comparison.label(r))), ("N", lambda r: str(r["spp"])), *group]
     lines = ["<tr>" + "".join(f"<th{' class=left' if i == 0 else ''}>{t}</th>" for i, (t, _) in enumerate(lead)) +
-             "".join(f'<th title="{html.escape(words)}">{title.replace(chr(10), "<br>")}</th>' for title, _, words in comparison.columns) +
+             "".join(f'<th title="{html.escape(words)}">{title.replace(chr(10), "<br>")}</th>' for title, _, words in columns) +
              "</tr>"]
     previous = None
     for row in sorted(comparison.of(setting), key=lambda r: r["spp"]):
         rule = ' class="rule"' if previous not in (None, row["spp"]) else ""
         previous = row["spp"]
         cells = [cell(row) for _, cell in lead]
-        values = [cell(row) for _, cell, _ in comparison.columns]
-        if row["strategy"] == comparison.baseline:
-            values[-2:] = ["baseline", "baseline"]
-        lines.append(f"<tr{rule}><td class=left>{cells[0]}</td>" + "".join(f"<td>{c}</td>" for c in cells[1:] + values) + "</tr>")
-    return f"<h3>{html.escape(comparison.titles[setting])}</h3>\n<table>\n" + "\n".join(lines) + "\n</table>"
+        compared = row["strategy"] != comparison.baseline
+        cells += [cell(row) if compared or not title.endswith(("ratio", "speed")) else "baseline" for title, cell, _ in columns]
+        lines.append(f"<tr{rule}><td class=left>{cells[0]}</td>" + "".join(f"<td>{c}</td>" for c in cells[1:]) + "</tr>")
+    return f"<h3>{html.escape(comparison.titles[setting])}</h3>\n<div class=scroll><table>\n" + "\n".join(lines) + "\n</table></div>"
 
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 1120px; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.6em; margin-bottom: 0; } h2 { font-size: 1.25em; margin: 2em 0 .4em; } h3 { font-size: 1em; margin: 1.2em 0 .4em; }
+.lead { font-size: 1.15em; } details { margin: .6em 0; } summary { cursor: pointer; font-weight: 600; }
 table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; }
 th, td { padding: .25em .6em; text-align: right; white-space: nowrap; } th { border-bottom: 2px solid #222; vertical-align: bottom; }
-.left { text-align: left; } tr.rule td { border-top: 1px solid #bbb; }
-.legend span { margin-right: 1.5em; } .legend i { display: inline-block; width: 1em; height: 1em; margin-right: .4em; vertical-align: -.15em; }
+.left { text-align: left; position: sticky; left: 0; background: #fff; } tr.rule td { border-top: 1px solid #bbb; }
+.legend span { margin-right: 1.5em; white-space: nowrap; }
+.legend i { display: inline-block; width: 1em; height: 1em; margin-right: .4em; vertical-align: -.15em; }
+.panels { display: flex; flex-wrap: wrap; gap: 8px; } .panels img { width: 346px; max-width: 100%; }
 img { max-width: 100%; } dt { font-weight: 600; } dd { margin: 0 0 .4em 1.5em; }
-.scroll { overflow-x: auto; } .aside { color: #666; } code { background: #f2f2f2; padding: .1em .3em; overflow-wrap: anywhere; }
+.scroll { overflow-x: auto; } .aside { color: #555; } code { background: #f2f2f2; padding: .1em .3em; overflow-wrap: anywhere; }
 """
 
 
-def page(comparison, picture, command):
+def image(words, svg):
+    return f'<img alt="{html.escape(words)}" src="data:image/svg+xml;base64,{svg}">'
+
+
+def legend(comparison):
+    return "<p class=legend>" + " ".join(f'<span><i style="background:{colour}"></i>{html.escape(label)}</span>'
+                                         for label, colour in charts.colours(comparison).items()) + "</p>"
+
+
+def chart_section(comparison, key, title, words, axis_title, line=None):
+    panels = [charts.bars(comparison, s, key, axis_title, line) for s in comparison.settings]
+    if not any(panels):
+        return ""
+    return (f"<h2>{title}</h2>\n<p>{words}</p>\n{legend(comparison)}<div class=panels>" +
+            "".join(image(f"{title}, {comparison.titles[s]}", panel) for s, panel in zip(comparison.settings, panels) if panel) + "</div>")
+
+
+def factor_section(comparison):
+    panels = [(s, charts.factor_panels(comparison, s)) for s in comparison.settings]
+    if not any(chart for _, chart in panels):
+        return ""
+    text = (f"<h2>Where the difference in bytes comes from</h2>\n<p>Read each panel from top to bottom: start at 1, the traffic of "
+            f"{html.escape(comparison.baseline)}; each factor moves it <b style='color:{charts.LESS}'>left (less)</b> or "
+            f"<b style='color:{charts.MORE}'>right (more)</b>; the black bars are the ratios that they multiply to, exactly.</p>\n<dl>" +
+            "".join(f"<dt>{name}</dt><dd>{words}</dd>" for _, name, words in comparison.factors) + "</dl>")
+    for setting, own in panels:
+        if own:
+            text += f"<h3>{html.escape(comparison.titles[setting])}</h3>\n<div class=panels>" + "".join(image(*p) for p in own) + "</div>"
+    return text
+
+
+def page(comparison, quality, picture, command):
     first = comparison.rows[0]
     scenes = ", ".join(distinct(r["scene"] for r in comparison.rows))
+    columns = [c for c in COLUMNS if any(c[1](row) != "\u2013" for row in comparison.rows)]
     parts = [f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>raycache: {html.escape(scenes)}</title>
 <style>{STYLE}</style></head><body>
-<h1>How much memory traffic does a sampling strategy cause?</h1>
-<p class="aside">Scene {html.escape(scenes)}; sequence {html.escape(", ".join(distinct(r["sequence"] for r in comparison.rows)))};
-{len(first["samples"])} of the N sample indices traced for each row; GPU caches simulated, no GPU used.</p>"""]
-    if comparison.baseline:
-        parts.append("<h2>What was found</h2>\n<ul>" +
-                     "".join(f"<li>{s}</li>\n" for s in findings(comparison) if not comparison.grouped) + "</ul>")
-        parts.append("<p class=aside>Less traffic is not the same as less time: this page counts bytes, it does not predict speed. "
-                     "\u00b1 is a 95 % confidence interval over sample indices.</p>")
+<h1>What a sampling strategy costs a GPU's caches</h1>"""]
+    if comparison.baseline and not comparison.grouped:
+        parts.append(f'<p class="lead">{" ".join(headline(comparison, quality))}</p>')
+    parts.append(f"""<p class="aside">Scene {html.escape(scenes)}; sequence {html.escape(", ".join(distinct(r["sequence"] for r in comparison.rows)))};
+{len(first["samples"])} of the N sample indices traced for each row. GPUs are simulated{", times are a model's prediction" if comparison.timed else ""}: nothing
+was measured on hardware. \u00b1 is everywhere the half width of the 95 % confidence interval over sample indices.</p>""")
+    if comparison.baseline and not comparison.grouped:
+        parts.append(f"<h2>Strategy by strategy</h2>\n<p>Each against {html.escape(comparison.baseline)}.</p>\n<ul>" +
+                     "".join(f"<li>{s}</li>\n" for s in findings(comparison)) + "</ul>")
     if not comparison.grouped:
-        for key, title in (("dram_bytes_per_ray", "DRAM"), ("l2_bytes_per_ray", "L2\u2192L1")):
-            parts.append(f'<h2>{title} traffic</h2>\n<p>{"Read from memory, past both caches." if title == "DRAM" else "Read from L2 because L1 did not have it."} '
-                         f"Lower is better; the thin lines are 95 % confidence intervals.</p>\n{legend(comparison)}"
-                         f'<img alt="{title} bytes per ray by strategy and N" src="data:image/svg+xml;base64,{traffic_chart(comparison, key, title)}">')
-        charts = [(s, factor_chart(comparison, s)) for s in comparison.settings]
-        if any(chart for _, chart in charts):
-            parts.append(f"<h2>Where the difference comes from</h2>\n<p>Read each panel from top to bottom: start at 1, the traffic of "
-                         f"{html.escape(comparison.baseline)}; each factor moves it <b style='color:{LESS}'>left (less)</b> or "
-                         f"<b style='color:{MORE}'>right (more)</b>; the last bar is where it ends. The factors multiply to the ratio exactly.</p>\n<dl>" +
-                         "".join(f"<dt>{name}</dt><dd>{words}</dd>" for _, name, words in comparison.factors) + "</dl>")
-            parts += [f'<h3>{html.escape(comparison.titles[s])}</h3>\n<img alt="factors of the DRAM ratio" '
-                      f'src="data:image/svg+xml;base64,{chart}">' for s, chart in charts if chart]
-    parts.append("<h2>All numbers</h2>\n<div class=scroll>" + "\n".join(table(comparison, s) for s in comparison.settings) + "</div>")
+        parts.append(chart_section(comparison, "speed_up", "Predicted speed", f"Time of {html.escape(comparison.baseline)} over that of the "
+                                   "strategy: above the dashed line is faster. The thin lines are 95 % confidence intervals.",
+                                   "times as fast", 1))
+        parts.append(chart_section(comparison, "l2_bytes_per_ray", "L2\u2192L1 traffic", "Bytes that L1 did not have and read from L2. Lower is "
+                                   "better; the thin lines are 95 % confidence intervals.", "bytes per ray"))
+        parts.append(chart_section(comparison, "dram_bytes_per_ray", "DRAM traffic", "Bytes that no cache had. Lower is better. Each sample index "
+                                   "begins with cold caches, so where L2 holds the scene these are first touches alone (see the table).",
+                                   "bytes per ray"))
+        parts.append(factor_section(comparison))
+    parts.append("<h2>All numbers</h2>\n" + "\n".join(table(comparison, columns, s) for s in comparison.settings))
     parts += [f"<p>Note: {html.escape(note)}.</p>" for note in comparison.notes]
     strategies = distinct((r["strategy"], r["spp"], r["parameters"]) for r in comparison.rows if r["parameters"])
     parts.append("<h2>What the words mean</h2>\n<dl><dt>N</dt><dd>samples per pixel of the whole picture. Only some sample indices "
                  "are traced: a random choice, the same for every strategy</dd>" +
-                 "".join(f"<dt>{title.replace(chr(10), ' ')}</dt><dd>{words}</dd>" for title, _, words in comparison.columns) + "</dl>")
+                 "".join(f"<dt>{title.replace(chr(10), ' ')}</dt><dd>{words}</dd>" for title, _, words in columns) + "</dl>")
     if strategies:
         parts.append("<h3>Parameters</h3>\n<ul>" + "".join(f"<li>{html.escape(s)}, N = {n}: {html.escape(p)}</li>" for s, n, p in strategies) + "</ul>")
     if picture:
@@ -296,7 +225,7 @@ def page(comparison, picture, command):
     if command:
         parts.append(f"<h2>Made with</h2>\n<p><code>{html.escape(command)}</code></p>")
     parts.append("</body></html>\n")
-    return "\n".join(parts)
+    return "\n".join(part for part in parts if part)
 
 
 def read_report(path):
@@ -310,15 +239,16 @@ def read_report(path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("comparison", type=pathlib.Path, help="JSON of raycache compare")
+    parser.add_argument("--quality", type=pathlib.Path, help="JSON of raycache quality: what the strategies cost in picture quality")
     parser.add_argument("--picture", type=pathlib.Path, help="PNG of the scene, shown on the page")
     parser.add_argument("--command", default="", help="how the comparison was made, shown on the page")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="HTML page to write")
     arguments = parser.parse_args()
-    plt.rcParams.update({"svg.hashsalt": "raycache", "font.size": 9})  # the same input gives the same bytes
     try:
         comparison = Comparison(read_report(arguments.comparison))
+        quality = read_report(arguments.quality) if arguments.quality else None
         picture = arguments.picture.read_bytes() if arguments.picture else None
-        text = page(comparison, picture, arguments.command)
+        text = page(comparison, quality, picture, arguments.command)
         with whole_file(arguments.output) as file:
             file.write(text.encode())
     except OSError as error:

@@ -33,11 +33,17 @@ std::string baseline_of(const std::vector<Series>& series, const std::string& as
 template <class Report>
 void publish(const Report& report, const JsonSubject& subject, const ReportOptions& o) {
     using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
+    const auto text = [&] {
+        if constexpr (requires { to_text(report, std::size_t{}); })
+            return to_text(report, o.width.columns());
+        else
+            return to_text(report);
+    };
     const auto json = [&] { return o.json.document(to_json(report), subject); };
     Deliveries deliveries;
-    deliveries.attempt([&] { print(o.json ? json() : o.csv ? to_csv(report) : to_text(report)); });
+    deliveries.attempt([&] { print(o.json ? json() : o.csv ? to_csv(report) : text()); });
     if (!o.save.empty()) {
-        deliveries.attempt([&] { write_text(o.save + ".txt", to_text(report)); });
+        deliveries.attempt([&] { write_text(o.save + ".txt", text()); });
         deliveries.attempt([&] { write_text(o.save + ".json", json()); });
         deliveries.attempt([&] { write_text(o.save + ".csv", to_csv(report)); });
     }
@@ -52,7 +58,7 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
         ->delimiter(',')
         ->allow_extra_args(false);
     gpus.add_changes(app);
-    app.add_flag("--timed", timed, "predict cycles: latencies, queues and bandwidths instead of order alone");
+    app.add_flag("--timed", timed, "predict cycles, too: latencies, queues and bandwidths beside order");
     app.add_option(
            "--by", by,
            "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
@@ -61,6 +67,7 @@ void ReportOptions::add(CLI::App& app, bool with_baseline) {
         app.add_option("--baseline", baseline,
                        "strategy that ratios refer to; default: cranley-patterson where it is compared");
     json.add(app);
+    width.add(app);
     app.add_flag("--csv", csv, "print CSV");
     app.add_option("--counters", counters,
                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
@@ -103,8 +110,9 @@ void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources,
     for (std::size_t i = 0; i < sources.size(); ++i)
         subject.traces.push_back(settings_json(*sources[i].header, files.empty() ? "" : files[i]));
     if (timed) {
-        const auto series = replay_timed(sources, loaded, progress);
-        return publish(cachesim::make_timed_report(series, baseline_of(series, baseline)), subject, *this);
+        const Predicted all = predict(sources, loaded, progress);
+        return publish(cachesim::make_timed_report(all.times, baseline_of(all.times, baseline), all.traffic), subject,
+                       *this);
     }
     const auto series = replay(sources, loaded, progress);
     const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));

@@ -11,6 +11,7 @@
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
+#include "tools/width_option.hpp"
 #include "tools/progress.hpp"
 
 namespace raycache::tools {
@@ -20,6 +21,7 @@ struct ReportOptions {
     bool timed = false;
     std::string by = "none", baseline, save, counters;
     JsonOption json;
+    WidthOption width;
     bool csv = false;
 
     void add(CLI::App&, bool with_baseline);

@@ -1,7 +1,10 @@
 #include "cachesim/analysis/factor_terms.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "cachesim/report/estimate.hpp"
 
 namespace raycache::cachesim {
 
@@ -25,8 +28,9 @@ constexpr FactorTerm coalescing{"coalescing",
                                 &Factors::coalescing,
                                 "fewer sectors per warp access: lanes share more of them",
                                 "more sectors per warp access: lanes share fewer of them"};
-constexpr FactorTerm l1{"L1 locality",      "l1_locality",         "L1 miss rate",       &Counters::l2_sectors,
-                        &Counters::sectors, &Factors::l1_locality, "lower L1 miss rate", "higher L1 miss rate"};
+constexpr FactorTerm l1{
+    "L1 locality",      "l1_locality",         "L1 visit miss rate",           &Counters::l2_sectors,
+    &Counters::sectors, &Factors::l1_locality, "lower L1 miss rate of visits", "higher L1 miss rate of visits"};
 
 constexpr FactorTerm l2(std::uint64_t Counters::*fetched) {
     return {"L2 locality",         "l2_locality",         "L2 miss rate",       fetched,
@@ -44,21 +48,59 @@ std::span<const FactorTerm> factor_terms(std::size_t levels) {
     return levels == 3 ? std::span<const FactorTerm>(three_levels) : two_levels;
 }
 
-std::optional<Factors> traffic_factors(const Counters& base, const Counters& other, std::size_t levels) {
-    Factors factors;
-    for (const FactorTerm& term : factor_terms(levels)) factors.*term.factor = term.value(other) / term.value(base);
-    return std::isfinite(factors.product()) ? std::optional(factors) : std::nullopt;
+namespace {
+
+/// (y/x of other) / (y/x of base).
+Estimate factor(const std::vector<Counters>& base, const std::vector<Counters>& other, std::uint64_t Counters::*y,
+                std::uint64_t Counters::*x) {
+    const auto values = [](const std::vector<Counters>& counts, std::uint64_t Counters::*member) {
+        std::vector<double> all;
+        for (const Counters& c : counts) all.push_back(static_cast<double>(c.*member));
+        return all;
+    };
+    return ratio_to_baseline({values(other, y), values(other, x)}, {values(base, y), values(base, x)});
 }
 
-std::optional<MainTerm> main_term(const Factors& factors) {
-    const double whole = std::log(factors.product());
+double sign_of(double log) { return log < 0 ? -1 : 1; }
+
+}  // namespace
+
+std::optional<Factors> traffic_factors(const std::vector<Counters>& base, const std::vector<Counters>& other,
+                                       std::size_t levels) {
+    Factors factors;
+    for (const FactorTerm& term : factor_terms(levels))
+        factors.*term.factor = factor(base, other, term.numerator, term.denominator);
+    if (!std::isfinite(factors.product())) return std::nullopt;
+    factors.equal_miss_rates = factor(base, other, &Counters::sectors, &Counters::rays);
+    factors.cache_locality = factor(base, other, &Counters::dram_sectors, &Counters::sectors);
+    factors.l1_l2_locality =
+        levels == 3 ? factor(base, other, &Counters::l3_sectors, &Counters::sectors) : factors.cache_locality;
+    return factors;
+}
+
+std::optional<MainCause> main_cause(const Factors& factors, Traffic traffic) {
+    struct Cause {
+        const char* name;
+        const Estimate* factor;
+        const char *fewer, *more;
+    };
+    std::vector<Cause> causes;
+    for (const FactorTerm& term : {work, simt, coalescing})
+        causes.push_back({term.name, &(factors.*term.factor), term.fewer, term.more});
+    if (traffic == Traffic::l2_to_l1)
+        causes.push_back({l1.name, &factors.l1_locality, l1.fewer, l1.more});
+    else
+        causes.push_back({"cache locality",
+                          traffic == Traffic::dram ? &factors.cache_locality : &factors.l1_l2_locality,
+                          "fewer misses per sector asked for, all levels together",
+                          "more misses per sector asked for, all levels together"});
+    double whole = 0;
+    for (const Cause& cause : causes) whole += std::log(cause.factor->mean);
     if (!std::isfinite(whole) || whole == 0) return std::nullopt;
-    std::optional<MainTerm> best;
-    for (const FactorTerm& term : three_levels) {  // a factor of 1 where there is no L3 is never the best
-        const double factor = factors.*term.factor, share = std::log(factor) / whole;
-        if (!best || share > best->share) best = MainTerm{&term, factor, share};
-    }
-    return best;
+    const auto way = [&](const Cause& cause) { return sign_of(whole) * std::log(cause.factor->mean); };
+    const Cause& most = *std::max_element(causes.begin(), causes.end(),
+                                          [&](const Cause& a, const Cause& b) { return way(a) < way(b); });
+    return MainCause{most.name, *most.factor, most.factor->mean < 1 ? most.fewer : most.more};
 }
 
 }  // namespace raycache::cachesim

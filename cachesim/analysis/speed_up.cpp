@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cachesim/report/format.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
@@ -37,28 +38,28 @@ std::string change(double quotient) {
     return fmt::format("{:.0f} % {}", std::fabs(percent), percent < 0 ? "lower" : "higher");
 }
 
-/// "1.472 ±0.004"; `unit` follows the mean.
-std::string with_half_width(const Estimate& e, int digits, const char* unit = "") {
-    std::string text = fmt::format("{:.{}f}{}", e.mean, digits, unit);
-    if (e.half_width) text += fmt::format(" ±{:.{}f}", *e.half_width, digits);
-    return text;
-}
-
-/// Less work or fuller warps, whichever changes more.
-std::string cause_of_rest(double work, double divergence) {
+/// Less work or fuller warps: of those that change the time as `remains` says, the one that changes more.
+std::string cause_of_rest(const Estimate& remains, double work, double divergence) {
     constexpr double least = 0.005;
-    if (std::fabs(std::log(divergence)) > std::fabs(std::log(work)) && std::fabs(divergence - 1) > least)
-        return divergence < 1 ? "fewer divergent steps" : "more divergent steps";
-    if (std::fabs(work - 1) > least) return work < 1 ? "less work per ray" : "more work per ray";
-    return "work and SIMT efficiency as before";
+    if (std::fabs(remains.mean - 1) < least) return "work and SIMT efficiency as before";
+    const bool faster = remains.mean > 1;
+    const auto helps = [&](double factor) { return faster ? 1 / factor : factor; };
+    if (std::max(helps(work), helps(divergence)) < 1 + least) return "neither work nor SIMT efficiency says why";
+    if (helps(divergence) > helps(work)) return faster ? "fewer divergent steps" : "more divergent steps";
+    return faster ? "less work per ray" : "more work per ray";
 }
 
 /// What caches do: `rest` is the factor that perfect ones leave out, `traffic` that of L1-to-L2 sectors per ray.
-std::string role_of_caches(double rest, double traffic) {
+std::string role_of_caches(const Estimate& rest, double traffic) {
     constexpr double least = 0.01;
-    if (std::fabs(rest - 1) < least) return "the caches add nothing to it";
-    const std::string factor = fmt::format("{:.2f}x", std::max(rest, 1 / rest));
-    if (rest > 1)
+    if (rest.half_width && *rest.half_width >= least && std::fabs(rest.mean - 1) <= *rest.half_width)
+        return fmt::format("what the caches add, {:.2f}x{}, is not certain", rest.mean, half_width_text(rest, 2));
+    if (std::fabs(rest.mean - 1) < least) return "the caches add nothing to it";
+    const double size = std::max(rest.mean, 1 / rest.mean);
+    // The half width of 1 / x, to first order.
+    const Estimate shown{size, rest.half_width ? std::optional(*rest.half_width * size / rest.mean) : std::nullopt};
+    const std::string factor = fmt::format("{:.2f}x{}", size, half_width_text(shown, 2));
+    if (rest.mean > 1)
         return traffic < 1 ? "the other " + factor + " is locality"
                            : "the other " + factor + " is no locality but shorter waits of the longest warps";
     return traffic > 1 ? "more traffic takes " + factor + " of it back"
@@ -74,7 +75,18 @@ Estimate SpeedUp::value() const {
     return ratio_to_baseline({base_cycles, ones}, {other_cycles, ones});
 }
 
-std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, const std::string& other) {
+Estimate gain(const std::vector<double>& as_modelled, const std::vector<double>& idealised) {
+    return product_of_powers({{as_modelled, 1}, {idealised, -1}});
+}
+
+Estimate locality_part(const std::vector<SpeedUp>& all) {
+    const SpeedUp &real = all.front(), &perfect = all.at(1);
+    return product_of_powers(
+        {{real.base_cycles, 1}, {real.other_cycles, -1}, {perfect.base_cycles, -1}, {perfect.other_cycles, 1}});
+}
+
+std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, const std::string& other,
+                    std::size_t width) {
     using Align = TextTable::Align;
     TextTable table;
     table.column("replay", Align::left);
@@ -83,12 +95,15 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
     table.column("other cycles", Align::right);
     table.column("gain", Align::right);
     table.column("speed-up", Align::right);
-    for (const SpeedUp& s : all)
-        table.row(
-            {s.replay.name, fmt::format("{}", s.base.cycles),
-             fmt::format("{:.2f}", ratio(all.front().base.cycles, s.base.cycles)), fmt::format("{}", s.other.cycles),
-             fmt::format("{:.2f}", ratio(all.front().other.cycles, s.other.cycles)), with_half_width(s.value(), 3)});
-    std::string text = table.text() + fmt::format("\nbase: {}; other: {}\n", base, other);
+    for (const SpeedUp& s : all) {
+        const auto times = [&](const std::vector<double>& modelled, const std::vector<double>& ideal) {
+            return &s == &all.front() ? std::string("1") : with_interval(gain(modelled, ideal), 2);
+        };
+        table.row({s.replay.name, fmt::format("{}", s.base.cycles), times(all.front().base_cycles, s.base_cycles),
+                   fmt::format("{}", s.other.cycles), times(all.front().other_cycles, s.other_cycles),
+                   with_interval(s.value(), 3)});
+    }
+    std::string text = table.text(width) + fmt::format("\nbase: {}; other: {}\n", base, other);
     for (const SpeedUp& s : all)
         if (*s.replay.meaning) text += fmt::format("{}: {}\n", s.replay.name, s.replay.meaning);
     return text;
@@ -99,20 +114,21 @@ std::string sentence(const std::vector<SpeedUp>& all) {
     if (real.base.warp_accesses == 0 || real.other.warp_accesses == 0)
         return "No speed-up to predict: a trace has no accesses.";
     const Estimate predicted = real.value();
-    const double remains = all.at(1).value().mean;
+    const Estimate remains = all.at(1).value();
     // lane accesses per ray, and warp accesses per lane access
     const double work = per_ray(real, real.base.lane_accesses, real.other.lane_accesses);
     const double divergence = per_ray(real, real.base.warp_accesses, real.other.warp_accesses) / work;
     const double to_l2 = per_ray(real, real.base.l1.misses(), real.other.l1.misses());
-    std::string text = with_half_width(predicted, 2, "x");
+    const auto times = [](const Estimate& e) { return fmt::format("{:.2f}x{}", e.mean, half_width_text(e, 2)); };
+    std::string text = times(predicted);
     if (predicted.half_width && std::fabs(predicted.mean - 1) <= *predicted.half_width)
         text += " predicted, so no certain difference in time";
     else
         text += " predicted";
-    text += fmt::format(
-        "; {:.2f}x would remain with perfect caches ({}); {}: L1-to-L2 traffic per ray is {}, DRAM traffic {}.",
-        remains, cause_of_rest(work, divergence), role_of_caches(predicted.mean / remains, to_l2), change(to_l2),
-        change(per_ray(real, real.base.dram_sectors, real.other.dram_sectors)));
+    text +=
+        fmt::format("; {} would remain with perfect caches ({}); {}: L1-to-L2 traffic per ray is {}, DRAM traffic {}.",
+                    times(remains), cause_of_rest(remains, work, divergence), role_of_caches(locality_part(all), to_l2),
+                    change(to_l2), change(per_ray(real, real.base.dram_sectors, real.other.dram_sectors)));
     constexpr double few = 0.5;
     const double taken = std::min(real.base.occupancy(), real.other.occupancy());
     if (taken < few)

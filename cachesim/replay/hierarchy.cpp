@@ -28,6 +28,7 @@ Hierarchy::Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions,
       coalesce_(regions, shape_of(gpu), ids_, instructions),
       count_loads_(regions, gpu.front_end, shape_of(gpu)),
       shared_(gpu.levels.size() - 1),
+      first_touches_(gpu.levels.back().line_bytes / gpu.levels.back().sector_bytes),
       tally_(regions),
       misses_(std::clamp<std::size_t>(accesses_per_window / gpu.sms, 8, 2048)) {
     for (std::size_t level = 0; level <= shared_; ++level) {
@@ -145,6 +146,9 @@ void Hierarchy::look_up(std::size_t level, Lookups& lookups, unsigned sm) {
     lookups.drop_answered(instructions_);
     for (std::size_t i = 0; i < lookups.count; ++i)
         tally_.add_fetched(level, origins_[lookups.accesses[i]].group, lookups.sectors[i]);
+    if (level != shared_) return;
+    for (std::size_t i = 0; i < lookups.count; ++i)
+        tally_.add_first(origins_[lookups.accesses[i]].group, first_touches_.add(lookups.lines[i], lookups.sectors[i]));
 }
 
 /// The shared level of a launch that writes: a written sector is there afterwards without being read from DRAM, and is
@@ -157,10 +161,12 @@ void Hierarchy::look_up_written(Lookups& lookups) {
         const Origin& origin = origins_[lookups.accesses[i]];
         if (traces::is_write(kinds_[origin.region])) {
             tally_.add_fetched(shared_, origin.group, write_back_->write(line, asked_[i], fetched));
+            first_touches_.add(line, asked_[i] | fetched);  // there without being read
         } else {
             write_back_->read(line, fetched);
             tally_.add_unasked(shared_, origin.group, fetched & ~asked_[i]);
             tally_.add_fetched(shared_, origin.group, fetched);
+            tally_.add_first(origin.group, first_touches_.add(line, fetched));
         }
     }
 }

@@ -18,6 +18,7 @@
 #include "cachesim/frontend/warp_access.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
+#include "cachesim/replay/first_touches.hpp"
 #include "cachesim/replay/miss_window.hpp"
 #include "cachesim/replay/request_sink.hpp"
 #include "cachesim/replay/tally.hpp"
@@ -98,6 +99,7 @@ private:
     std::vector<traces::ObjectKind> kinds_;       ///< of each region
     std::vector<std::uint32_t> element_bytes_;    ///< likewise
     std::optional<WriteBack> write_back_;         ///< where any region is written
+    FirstTouches first_touches_;
     Tally tally_;
     RequestSink* sink_ = nullptr;
     std::vector<WarpAccess> accesses_;      ///< of this window

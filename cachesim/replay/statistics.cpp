@@ -18,6 +18,7 @@ Counters& Counters::operator+=(const Counters& other) {
     dram_sectors += other.dram_sectors;
     written_sectors += other.written_sectors;
     sort_sectors += other.sort_sectors;
+    dram_first_sectors += other.dram_first_sectors;
     return *this;
 }
 

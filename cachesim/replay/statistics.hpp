@@ -17,7 +17,7 @@ struct Counters {
     std::uint64_t lane_accesses = 0;  ///< lane accesses to anything
     std::uint64_t warp_accesses = 0;  ///< access records; of a narrower machine: vectors
     std::uint64_t loads = 0;          ///< load instructions that the warp accesses are: LoadCounter
-    std::uint64_t l1_requests = 0;    ///< sectors that these ask the tag stage for
+    std::uint64_t l1_requests = 0;    ///< sectors that these ask the tag stage for: what Nsight Compute counts
     std::uint64_t sectors = 0;        ///< distinct sectors of each warp access: those looked up in L1
     std::uint64_t l1_hits = 0;        ///< of those, found (a sector on its way counts as found)
     /// Sectors asked of L2: those missing in L1, and those fetched beside them where the L1 fills more than a sector.
@@ -29,6 +29,12 @@ struct Counters {
     /// and those that sorts read and write.
     std::uint64_t dram_sectors = 0;
     std::uint64_t written_sectors = 0, sort_sectors = 0;  ///< of these
+    /// Of dram_sectors, those read that were in no cache before in this launch: compulsory misses of the GPU, which no
+    /// cache avoids. Each launch begins with cold caches.
+    std::uint64_t dram_first_sectors = 0;
+
+    /// Sectors read from DRAM: neither written nor moved by sorts.
+    std::uint64_t dram_read_sectors() const { return dram_sectors - written_sectors - sort_sectors; }
 
     /// Requests of single loads that L1 answers: only the first request for a sector in a warp access can miss.
     std::uint64_t l1_request_hits() const { return l1_requests - (sectors - l1_hits); }

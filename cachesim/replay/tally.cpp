@@ -23,6 +23,7 @@ Counters Tally::counters(const Sums& sums, std::size_t region, std::size_t level
         asked = sums.fetched[level];
     }
     c.dram_sectors = asked;
+    c.dram_first_sectors = sums.first;
     if (traces::is_write(kind)) c.written_sectors = asked;
     if (kind == traces::ObjectKind::sort) c.sort_sectors = asked;
     return c;

@@ -54,6 +54,11 @@ public:
         for (std::size_t l = 0; l <= level; ++l) sums_[group].fetched[l] += sectors;
     }
 
+    /// Of what comes from DRAM, sectors that no cache of the GPU had held before.
+    void add_first(std::uint32_t group, std::uint32_t sectors) {
+        sums_[group].first += static_cast<unsigned>(std::popcount(sectors));
+    }
+
     /// Of what a level fetched, that which nobody had asked for.
     void add_unasked(std::size_t level, std::uint32_t group, std::uint32_t sectors) {
         sums_[group].unasked[level] += static_cast<unsigned>(std::popcount(sectors));
@@ -66,7 +71,7 @@ private:
     static constexpr std::size_t most_levels = 3;
     /// Counters, as far as they do not follow from others.
     struct Sums {
-        std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, requests = 0, sectors = 0;
+        std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, requests = 0, sectors = 0, first = 0;
         std::array<std::uint64_t, most_levels> fetched{}, unasked{};  ///< sectors, by level
     };
     Counters counters(const Sums&, std::size_t region, std::size_t levels, const LoadCounter&) const;

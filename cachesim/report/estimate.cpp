@@ -49,6 +49,22 @@ Estimate ratio_to_baseline(const Sums& s, const Sums& baseline) {
     return {mean, half_width(paired, 1)};
 }
 
+Estimate product_of_powers(const std::vector<Power>& powers) {
+    const std::size_t n = powers.empty() ? 0 : powers.front().values.size();
+    double product = 1;
+    bool zero = false;
+    std::vector<double> residuals(n);
+    for (const Power& power : powers) {
+        const double total = sum(power.values);
+        zero |= total == 0;
+        product *= std::pow(total, power.exponent);
+        for (std::size_t i = 0; i < n; ++i)
+            residuals[i] += power.exponent * (static_cast<double>(n) * power.values[i] / total - 1);
+    }
+    if (!std::isfinite(product)) return {std::numeric_limits<double>::quiet_NaN(), std::nullopt};
+    return {product, zero ? std::nullopt : half_width(residuals, product)};
+}
+
 double student_t_975(std::size_t degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(static_cast<double>(degrees_of_freedom)), 0.975);
 }

@@ -5,7 +5,11 @@
 //     var R = sum (y_i - R x_i)^2 / (n (n - 1) mean(x)^2)
 // A ratio Q = R / R' to a baseline that has the same sample indices, first-order expansion with paired residuals:
 //     e_i = (y_i - R x_i) / mean(y) - (y'_i - R' x'_i) / mean(y'),   var Q = Q^2 sum e_i^2 / (n (n - 1))
-// half width = t(0.975, n - 1) sqrt(var).
+// A product of powers of totals Q = prod_k (sum_i v_ki)^p_k, such as a factor of the traffic identity or a part of a
+// predicted speed-up, by the delta method on log Q (Cochran 1977, section 6.3; Casella & Berger, Statistical Inference,
+// 2002, section 5.5.4), which is the same expansion:
+//     e_i = sum_k p_k v_ki / mean(v_k),   var Q = Q^2 sum (e_i - mean(e))^2 / (n (n - 1))
+// half width = t(0.975, n - 1) sqrt(var). Every "±" of a report is such a half width.
 #pragma once
 
 #include <optional>
@@ -25,6 +29,16 @@ Estimate ratio_of_totals(const Sums&);
 
 /// (sum y / sum x) of one over that of the baseline, index by index.
 Estimate ratio_to_baseline(const Sums&, const Sums& baseline);
+
+/// One factor of a product: a total over sample indices, to a power.
+struct Power {
+    std::vector<double> values;  ///< of each sample index
+    int exponent = 1;
+};
+
+/// The product of the totals to their powers; all of the same sample indices. No number where a total that is divided
+/// by is 0; no interval where any total is.
+Estimate product_of_powers(const std::vector<Power>&);
 
 /// The 0.975 quantile of Student's t distribution; degrees of freedom >= 1.
 double student_t_975(std::size_t degrees_of_freedom);

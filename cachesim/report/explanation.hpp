@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "cachesim/analysis/speed_up.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "cachesim/report/report.hpp"
+#include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
 
@@ -20,6 +22,7 @@ struct ExplainedTrace {
     Findings findings;                       ///< of all launches together
 
     Counters totals() const;
+    std::vector<Counters> by_launch() const;
 };
 
 struct Explanation {
@@ -33,21 +36,27 @@ struct Explanation {
     std::vector<SpeedUp> speed_ups;
     std::string no_time;
 
+    /// Of `other` over `base`; none where a quotient has no value.
+    std::optional<Factors> factors() const;
     std::size_t levels() const { return base.findings.levels.size(); }  ///< of the GPU's caches
 };
 
-/// Readable in 110 columns.
-std::string to_text(const Explanation&);
+/// Tables of at most `width` columns where they can be so narrow.
+std::string to_text(const Explanation&, std::size_t width = text_width);
 std::string to_json(const Explanation&);
 
-/// The finding about bytes in one sentence, made from the numbers. That about time: sentence(speed_ups).
+/// The finding about bytes in one sentence, level by level, made from the numbers: no difference is claimed, and no
+/// cause named, of a ratio whose interval holds 1. That about time: sentence(speed_ups).
 std::string sentence(const Explanation&);
 
 /// DRAM bytes per ray, or L2-to-L1 bytes, of `other` over those of `base`, paired by sample index.
 Estimate dram_bytes_ratio(const Explanation&);
 Estimate l2_bytes_ratio(const Explanation&);
 
-/// One line for each row of a report that has factors: the ratio, and the factor that does most for it.
+/// What there is to say of `other` against `base`, the predicted time included.
+Difference difference_of(const Explanation&);
+
+/// The verdict on each row of a report that has a ratio, one after the other.
 std::string factor_sentences(const Report&);
 
 }  // namespace raycache::cachesim

@@ -16,8 +16,16 @@ Json counts(const MissCounts& c) {
 
 /// The members of Counters that are no quotient of others.
 Json counters(const Counters& c, std::size_t levels) {
-    Json json{{"rays", c.rays},       {"steps", c.steps},           {"warp_accesses", c.warp_accesses},
-              {"sectors", c.sectors}, {"l2_sectors", c.l2_sectors}, {"dram_sectors", c.dram_sectors}};
+    Json json{{"rays", c.rays},
+              {"steps", c.steps},
+              {"warp_accesses", c.warp_accesses},
+              {"l1_requests", c.l1_requests},
+              {"l1_hits", c.l1_request_hits()},
+              {"sectors", c.sectors},
+              {"l1_visit_hits", c.l1_hits},
+              {"l2_sectors", c.l2_sectors},
+              {"dram_sectors", c.dram_sectors},
+              {"dram_first_sectors", c.dram_first_sectors}};
     if (levels == 3) json["l3_sectors"] = c.l3_sectors;
     return json;
 }
@@ -47,7 +55,15 @@ Json level(const LevelFindings& found) {
 }
 
 Json trace(const ExplainedTrace& t) {
-    Json json{{"name", t.name}, {"totals", counters(t.totals(), t.findings.levels.size())}};
+    const Counters all = t.totals();
+    const auto rate = [](std::uint64_t part, std::uint64_t whole) {
+        return json_of(static_cast<double>(part) / static_cast<double>(whole));
+    };
+    Json json{{"name", t.name},
+              {"totals", counters(all, t.findings.levels.size())},
+              {"l1_hit_rate", rate(all.l1_request_hits(), all.l1_requests)},
+              {"l1_visit_hit_rate", rate(all.l1_hits, all.sectors)},
+              {"dram_compulsory_share", rate(all.dram_first_sectors, all.dram_read_sectors())}};
     Json& levels = json["levels"] = Json::object();
     for (std::size_t i = 0; i < t.findings.levels.size(); ++i)
         levels[fmt::format("l{}", i + 1)] = level(t.findings.levels[i]);
@@ -56,30 +72,34 @@ Json trace(const ExplainedTrace& t) {
     return json;
 }
 
-Json factors(const Counters& base, const Counters& other, std::size_t levels) {
+Counters sum_of(const std::vector<Counters>& by_launch) {
+    Counters all;
+    for (const Counters& c : by_launch) all += c;
+    return all;
+}
+
+/// Both by sample index.
+Json factors(const std::vector<Counters>& base, const std::vector<Counters>& other, std::size_t levels) {
+    const Counters base_sum = sum_of(base), other_sum = sum_of(other);
+    const auto ratios = traffic_factors(base, other, levels);
     Json json = Json::object();
     for (const FactorTerm& term : factor_terms(levels))
-        json[term.key] = {{"base", json_of(term.value(base))},
-                          {"other", json_of(term.value(other))},
-                          {"factor", json_of(term.value(other) / term.value(base))}};
+        json[term.key] = {{"base", json_of(term.value(base_sum))},
+                          {"other", json_of(term.value(other_sum))},
+                          {"factor", ratios ? json_of((*ratios).*term.factor) : Json(nullptr)}};
     return json;
 }
 
 Json groups(const Explanation& e) {
     const auto bases = split(e.base.launches, e.by), others = split(e.other.launches, e.by);
-    const auto sum = [](const LaunchGroup& group) {
-        Counters all;
-        for (const Counters& c : group.by_launch) all += c;
-        return all;
-    };
     Json json = Json::array();
     for (const LaunchGroup& base : bases)
         for (const LaunchGroup& other : others)
             if (base.name == other.name)
                 json.push_back({{"group", base.name},
-                                {"base", counters(sum(base), e.levels())},
-                                {"other", counters(sum(other), e.levels())},
-                                {"factors", factors(sum(base), sum(other), e.levels())}});
+                                {"base", counters(sum_of(base.by_launch), e.levels())},
+                                {"other", counters(sum_of(other.by_launch), e.levels())},
+                                {"factors", factors(base.by_launch, other.by_launch, e.levels())}});
     return json;
 }
 
@@ -91,7 +111,11 @@ std::string to_json(const Explanation& e) {
     for (const LaunchStatistics& launch : e.base.launches) samples.push_back(launch.sample);
     json["dram_bytes_ratio"] = json_of(dram_bytes_ratio(e));
     json["l2_bytes_ratio"] = json_of(l2_bytes_ratio(e));
-    json["factors"] = factors(e.base.totals(), e.other.totals(), e.levels());
+    json["factors"] = factors(e.base.by_launch(), e.other.by_launch(), e.levels());
+    if (const auto all = e.factors()) {
+        json["equal_miss_rates"] = json_of(all->equal_miss_rates);
+        json["cache_locality"] = json_of(all->cache_locality);
+    }
     json["groups"] = groups(e);
     json["base"] = trace(e.base);
     json["other"] = trace(e.other);
@@ -100,7 +124,13 @@ std::string to_json(const Explanation& e) {
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},
                                  {"other_cycles", s.other.cycles},
+                                 {"base_gain", json_of(gain(e.speed_ups.front().base_cycles, s.base_cycles))},
+                                 {"other_gain", json_of(gain(e.speed_ups.front().other_cycles, s.other_cycles))},
                                  {"speed_up", json_of(s.value())}});
+    if (!e.speed_ups.empty())
+        json["speed_up_split"] = {{"with_perfect_caches", json_of(e.speed_ups.at(1).value())},
+                                  {"locality", json_of(locality_part(e.speed_ups))}};
+    json["verdict"] = json_of(verdict(difference_of(e)));
     json["sentence"] = sentence(e);
     if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
     if (!e.no_time.empty()) json["time_sentence"] = e.no_time + '.';

@@ -5,7 +5,9 @@
 #include <functional>
 
 #include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/report/estimate.hpp"
 #include "cachesim/report/explanation.hpp"
+#include "cachesim/report/format.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/waterfall.hpp"
@@ -15,19 +17,8 @@ namespace raycache::cachesim {
 namespace {
 
 using Align = TextTable::Align;
-constexpr std::size_t columns = 110;
 
-std::string decimals(double value, int digits) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-/// About four digits.
-std::string figure(double value) {
-    const double size = std::fabs(value);
-    return decimals(value, size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 1 ? 3 : 4);
-}
-std::string with_interval(const Estimate& e) {
-    return decimals(e.mean, 3) + (std::isfinite(e.mean) && e.half_width ? " ±" + decimals(*e.half_width, 3) : "");
-}
+std::string figure(double value) { return cachesim::figure(value, 4); }
 double quotient(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 std::string percent(std::uint64_t part, std::uint64_t whole) { return decimals(100 * quotient(part, whole), 1); }
 
@@ -52,60 +43,68 @@ private:
     std::uint64_t base_rays_, other_rays_;
 };
 
-/// Breaks lines between words.
-std::string wrapped(const std::string& text) {
-    std::string out;
-    std::size_t line = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        if (line != 0 && line + 1 + (end - at) > columns) {
-            out += '\n';
-            line = 0;
-        } else if (line != 0) {
-            out += ' ';
-            ++line;
-        }
-        out += text.substr(at, end - at);
-        line += end - at;
-        at = end + 1;
-    }
-    return out + '\n';
-}
-
-std::string identity_table(const Explanation& e) {
+std::string identity_table(const Explanation& e, std::size_t width) {
     const Counters base = e.base.totals(), other = e.other.totals();
     TextTable table;
     table.column("factor", Align::left);
     table.column("", Align::left);
     for (const std::string& title : {e.base.name, e.other.name, std::string("ratio")})
         table.column(title, Align::right);
+    const auto factors = e.factors();
+    const auto factor = [&](const std::optional<Estimate>& f) { return with_interval(f, 3); };
     for (const FactorTerm& term : factor_terms(e.levels()))
         table.row({term.name, term.quantity, figure(term.value(base)), figure(term.value(other)),
-                   decimals(term.value(other) / term.value(base), 3)});
+                   factor(factors ? std::optional((*factors).*term.factor) : std::nullopt)});
     const auto bytes = [&](const char* name, std::uint64_t Counters::*sectors, const Estimate& ratio) {
         table.row({"product", name, figure(e.sector_bytes * quotient(base.*sectors, base.rays)),
-                   figure(e.sector_bytes * quotient(other.*sectors, other.rays)), with_interval(ratio)});
+                   figure(e.sector_bytes * quotient(other.*sectors, other.rays)), with_interval(ratio, 3)});
     };
+    if (factors) {
+        const auto sum = [&](const char* name, const char* quantity, double b, double o, const Estimate& ratio) {
+            table.row({name, quantity, figure(b), figure(o), factor(ratio)});
+        };
+        sum("cache locality", "all miss rates", quotient(base.dram_sectors, base.sectors),
+            quotient(other.dram_sectors, other.sectors), factors->cache_locality);
+    }
     bytes("L2-to-L1 bytes/ray", &Counters::l2_sectors, l2_bytes_ratio(e));
     bytes("DRAM bytes/ray", &Counters::dram_sectors, dram_bytes_ratio(e));
-    return table.text();
+    const auto hits = [](const Counters& c) { return percent(c.l1_request_hits(), c.l1_requests); };
+    return table.text(width) + '\n' +
+           paragraph(
+               fmt::format("L1 visit miss rate: of the distinct sectors of each warp access. L1 %, hits of load "
+                           "requests as Nsight Compute counts (l1tex__t_sector_hit_rate): {} and {}. cache locality: "
+                           "the miss rates multiplied, DRAM sectors per sector asked for. ±: half width of the 95 % "
+                           "confidence interval over sample indices, paired.",
+                           hits(base), hits(other)));
 }
 
 std::string bars(const Explanation& e) {
-    const auto factors = traffic_factors(e.base.totals(), e.other.totals(), e.levels());
+    const auto factors = e.factors();
     if (!factors || !(factors->product() > 0)) return {};
     std::vector<WaterfallStep> steps;
     for (const FactorTerm& term : factor_terms(e.levels())) {
-        steps.push_back({term.name, (*factors).*term.factor});
+        steps.push_back({term.name, ((*factors).*term.factor).mean});
         if (term.factor == &Factors::l1_locality) steps.push_back({"= L2-to-L1 bytes", 1, true});
     }
     steps.push_back({"= DRAM bytes", 1, true});
     return "\nBytes per ray, factor by factor; logarithmic scale, to the left is less traffic\n\n" +
-           waterfall(steps, columns);
+           waterfall(steps, text_width);
+}
+
+Estimate dram_ratio(const std::vector<Counters>& base, const std::vector<Counters>& other) {
+    const auto sums = [](const std::vector<Counters>& counts) {
+        Sums s;
+        for (const Counters& c : counts) {
+            s.y.push_back(static_cast<double>(c.dram_sectors));
+            s.x.push_back(static_cast<double>(c.rays));
+        }
+        return s;
+    };
+    return ratio_to_baseline(sums(other), sums(base));
 }
 
 /// The identity of each group, and what it contributes to the change of the whole.
-std::string group_table(const Explanation& e) {
+std::string group_table(const Explanation& e, std::size_t width) {
     const auto groups = split(e.base.launches, e.by), others = split(e.other.launches, e.by);
     const Counters base_all = e.base.totals(), other_all = e.other.totals();
     const auto per_all = [&](const Counters& base, const Counters& other) {
@@ -122,20 +121,29 @@ std::string group_table(const Explanation& e) {
         const Counters base = sum_of(group), other = match == others.end() ? Counters{} : sum_of(*match);
         const double before = e.sector_bytes * quotient(base.dram_sectors, base.rays);
         const double after = e.sector_bytes * quotient(other.dram_sectors, other.rays);
-        std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(after / before, 3)};
-        for (const FactorTerm& term : factor_terms(e.levels()))
+        const std::vector<Counters> none(group.by_launch.size());
+        const auto& by_launch = match == others.end() ? none : match->by_launch;
+        const Estimate ratio = dram_ratio(group.by_launch, by_launch);
+        const auto factors = traffic_factors(group.by_launch, by_launch, e.levels());
+        std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(ratio.mean, 3)};
+        std::vector<std::string> widths{"", "", "", half_width_cell(ratio, 3)};
+        for (const FactorTerm& term : factor_terms(e.levels())) {
             cells.push_back(decimals(term.value(other) / term.value(base), 3));
+            widths.push_back(factors ? half_width_cell((*factors).*term.factor, 3) : "");
+        }
         cells.push_back(decimals(100 * per_all(base, other) / per_all(base_all, other_all), 1));
+        widths.emplace_back();
         table.row(std::move(cells));
+        if (factors && ratio.half_width) table.row(std::move(widths));
     }
     return fmt::format(
                "\nThe same for each group: DRAM bytes per ray of the group ({} and {}), the factors of\n"
                "their ratio, and the group's share of the change in DRAM bytes per ray of the whole\n\n",
                e.base.name, e.other.name) +
-           table.text();
+           table.text(width);
 }
 
-std::string class_table(const Explanation& e) {
+std::string class_table(const Explanation& e, std::size_t width) {
     const Pair per_ray(e);
     TextTable table;
     table.column("sectors/ray", Align::left);
@@ -158,22 +166,23 @@ std::string class_table(const Explanation& e) {
         row("  conflict", base.conflict, other.conflict, true);
         row("lucky hits", base.lucky_hits, other.lucky_hits, false);
     }
-    return "\nMisses by class\n\n" + table.text() + '\n' +
-           wrapped(
+    return "\nMisses by class\n\n" + table.text(width) + '\n' +
+           paragraph(
                "compulsory: the cache had never held the sector; capacity: a fully associative LRU cache of as "
                "many lines lacks it too; conflict: that cache would have had it; lucky: a hit where that cache "
-               "would have missed. Classes in % of the misses, the rest in % of the look-ups.");
+               "would have missed. Classes in % of the misses, the rest in % of the look-ups, of which L1 has one for "
+               "each distinct sector of a warp access.");
 }
 
 /// Where the misses are, one group of rows after the other.
-std::string place_table(const Explanation& e) {
+std::string place_table(const Explanation& e, std::size_t width) {
     const Pair per_ray(e);
     const LevelFindings &base1 = e.base.findings.levels.front(), &other1 = e.other.findings.levels.front();
     const LevelFindings &base2 = e.base.findings.levels.back(), &other2 = e.other.findings.levels.back();
     TextTable table;
     table.column("", Align::left);
-    for (const char* title :
-         {"L1 misses: base", "other", "ratio", "L1 miss %: base", "other", "DRAM sectors: base", "other", "ratio"})
+    for (const char* title : {"L1 misses: base", "other", "ratio", "L1 visit miss %: base", "other",
+                              "DRAM sectors: base", "other", "ratio"})
         table.column(title, Align::right);
     const auto row = [&](const std::string& name, const std::function<MissCounts(const LevelFindings&)>& of) {
         const MissCounts b1 = of(base1), o1 = of(other1), b2 = of(base2), o2 = of(other2);
@@ -200,12 +209,12 @@ std::string place_table(const Explanation& e) {
             return sum;
         });
     }
-    return "\nMisses by kind of object, ray and BVH depth: sectors per ray, over all rays\n\n" + table.text() +
+    return "\nMisses by kind of object, ray and BVH depth: sectors per ray, over all rays\n\n" + table.text(width) +
            (depth ? "\ndepth: links from the root of the BVH; the triangles of a leaf are as deep as the leaf.\n"
                   : "\nno depth in this trace: its nodes have no links.\n");
 }
 
-std::string sharing_table(const Explanation& e) {
+std::string sharing_table(const Explanation& e, std::size_t width) {
     const Pair per_ray(e);
     const Sharing &base = e.base.findings.sharing, &other = e.other.findings.sharing;
     TextTable table;
@@ -222,29 +231,36 @@ std::string sharing_table(const Explanation& e) {
     row("the same warp", base.same_warp, other.same_warp);
     row("another warp of the CTA", base.same_cta, other.same_cta);
     row("another CTA", base.other_cta, other.other_cta);
-    return "\nSharing: to whom L1 hits are owed, sectors per ray\n\n" + table.text();
+    return "\nSharing: to whom L1 hits are owed, sectors per ray\n\n" + table.text(width);
 }
 
 }  // namespace
 
-std::string to_text(const Explanation& e) {
+std::string to_text(const Explanation& e, std::size_t width) {
     std::string samples;
     for (const LaunchStatistics& launch : e.base.launches)
         samples += fmt::format("{}{}", samples.empty() ? "" : ", ", launch.sample);
-    std::string text = wrapped(fmt::format("{} against {}: {}, N {}, sample indices {}, GPU {}", e.other.name,
-                                           e.base.name, e.scene, e.spp, samples, e.gpu));
-    text += fmt::format("\nTraffic: {} B x the product of these factors\n\n", e.sector_bytes) + identity_table(e);
+    std::string text = paragraph(fmt::format("{} against {}: {}, N {}, sample indices {}, GPU {}", e.other.name,
+                                             e.base.name, e.scene, e.spp, samples, e.gpu));
+    text +=
+        fmt::format("\nTraffic: {} B x the product of these factors\n\n", e.sector_bytes) + identity_table(e, width);
     text += bars(e);
-    if (e.by != GroupBy::none) text += group_table(e);
-    text += class_table(e) + place_table(e) + sharing_table(e);
+    if (e.by != GroupBy::none) text += group_table(e, width);
+    text += class_table(e, width) + place_table(e, width) + sharing_table(e, width);
     if (!e.speed_ups.empty())
         text +=
             "\nPredicted time, and what is left of the speed-up when one cost is taken away\n"
             "(gain: how much faster than as modelled)\n\n" +
-            to_text(e.speed_ups, e.base.name, e.other.name);
-    text += '\n' + wrapped(sentence(e));
-    if (!e.no_time.empty()) return text + wrapped(e.no_time + '.');
-    return e.speed_ups.empty() ? text : text + wrapped(sentence(e.speed_ups));
+            to_text(e.speed_ups, e.base.name, e.other.name, width);
+    text += '\n';
+    if (!e.no_time.empty())
+        text += paragraph(e.no_time + '.');
+    else if (!e.speed_ups.empty())
+        text += paragraph(sentence(e.speed_ups));
+    text += paragraph(sentence(e));
+    if (difference_of(e).dram_compulsory_share >= mostly_compulsory)
+        text += paragraph("note: " + compulsory_note(e.gpu), 2);
+    return text;
 }
 
 }  // namespace raycache::cachesim

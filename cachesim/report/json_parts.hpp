@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cachesim/report/report.hpp"
+#include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
 
@@ -20,6 +21,10 @@ inline Json json_of(const Estimate& e) {
 }
 inline Json json_of(const std::optional<Estimate>& e) { return e ? json_of(*e) : Json(nullptr); }
 
+inline Json json_of(const Verdict& v) {
+    return {{"level", v.level ? Json(*v.level) : Json(nullptr)}, {"text", v.text}};
+}
+
 /// What a row is of: scene, strategy, GPU, group, sample indices.
 inline Json row_names(const Row& row) {
     return {{"scene", row.scene},           {"strategy", row.strategy},
@@ -28,6 +33,9 @@ inline Json row_names(const Row& row) {
             {"group", row.group},           {"spp", row.spp},
             {"samples", row.samples}};
 }
+
+/// A row of a report without its names, as to_json(Report) has it.
+Json traffic_json(const Report&, std::size_t row);
 
 /// The value of "by".
 inline const char* name_of(GroupBy by) {

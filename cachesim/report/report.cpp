@@ -8,9 +8,11 @@
 #include <set>
 #include <tuple>
 
+#include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/estimate.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/pairing.hpp"
+#include "cachesim/report/verdict.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::cachesim {
@@ -68,11 +70,13 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     row.steps_per_ray = ratio_of_totals(draft.sums(&Counters::steps, &Counters::rays));
     row.active_lanes = ratio_of_totals(draft.sums(&Counters::lane_accesses, &Counters::warp_accesses));
     row.sectors_per_access = ratio_of_totals(draft.sums(&Counters::sectors, &Counters::warp_accesses));
-    row.l1_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_hits, &Counters::sectors));
-    row.l1_request_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_request_hits, &Counters::l1_requests));
+    row.l1_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_request_hits, &Counters::l1_requests));
+    row.l1_visit_hit_rate = ratio_of_totals(draft.sums(&Counters::l1_hits, &Counters::sectors));
     row.l2_hit_rate = ratio_of_totals(draft.sums(&Counters::l2_hits, &Counters::l2_sectors));
     row.l2_bytes_per_ray = ratio_of_totals(draft.l2_bytes());
     row.dram_bytes_per_ray = ratio_of_totals(draft.dram_bytes());
+    row.dram_compulsory_share =
+        ratio_of_totals(draft.sums(&Counters::dram_first_sectors, &Counters::dram_read_sectors));
     if (row.totals.written_sectors != 0 || row.totals.sort_sectors != 0) {
         const double bytes = series.sector_bytes;
         row.written_bytes_per_ray = ratio_of_totals(draft.sums(&Counters::written_sectors, &Counters::rays, bytes));
@@ -82,24 +86,6 @@ Draft make_draft(const Series& series, const LaunchGroup& group) {
     row.l3_hit_rate = ratio_of_totals(draft.sums(&Counters::l3_hits, &Counters::l3_sectors));
     row.l3_bytes_per_ray = ratio_of_totals(draft.l3_bytes());
     return draft;
-}
-
-/// (y/x of own totals) / (y/x of the baseline's).
-double factor(const Counters& own, const Counters& base, std::uint64_t Counters::*y, std::uint64_t Counters::*x) {
-    const auto ratio = [&](const Counters& c) { return static_cast<double>(c.*y) / static_cast<double>(c.*x); };
-    return ratio(own) / ratio(base);
-}
-
-/// None where a quotient has no value: nothing was read, or nothing missed.
-std::optional<Factors> factors(const Counters& own, const Counters& base, std::size_t levels) {
-    const auto below_l2 = levels == 3 ? &Counters::l3_sectors : &Counters::dram_sectors;
-    const Factors f{factor(own, base, &Counters::steps, &Counters::rays),
-                    factor(own, base, &Counters::warp_accesses, &Counters::steps),
-                    factor(own, base, &Counters::sectors, &Counters::warp_accesses),
-                    factor(own, base, &Counters::l2_sectors, &Counters::sectors),
-                    factor(own, base, below_l2, &Counters::l2_sectors),
-                    levels == 3 ? factor(own, base, &Counters::dram_sectors, &Counters::l3_sectors) : 1};
-    return std::isfinite(f.product()) ? std::optional(f) : std::nullopt;
 }
 
 std::string name_of(const Row& row) {
@@ -143,8 +129,22 @@ void compare(Draft& draft, const std::vector<Draft>& drafts, const std::string& 
         return;
     }
     row.l2_bytes_ratio = ratio_to_baseline(draft.l2_bytes(), base->l2_bytes());
+    if (row.levels == 3) row.l3_bytes_ratio = ratio_to_baseline(draft.l3_bytes(), base->l3_bytes());
     row.dram_bytes_ratio = ratio_to_baseline(draft.dram_bytes(), base->dram_bytes());
-    row.factors = factors(row.totals, base->row.totals, row.levels);
+    row.factors = traffic_factors(base->by_launch, draft.by_launch, row.levels);
+}
+
+}  // namespace
+
+namespace {
+
+void note_compulsory(const Report& report, Notes& notes) {
+    std::vector<std::string> gpus;
+    for (const Row& row : report.rows)
+        if (row.dram_compulsory_share.mean >= mostly_compulsory &&
+            std::find(gpus.begin(), gpus.end(), row.gpu) == gpus.end())
+            gpus.push_back(row.gpu);
+    if (!gpus.empty()) notes.add(compulsory_note(fmt::format("{}", fmt::join(gpus, ", "))));
 }
 
 }  // namespace
@@ -155,6 +155,19 @@ bool Report::has_l3() const {
 
 bool Report::has_wavefront() const {
     return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.written_bytes_per_ray.has_value(); });
+}
+
+std::string row_label(const Report& report, const Row& row) {
+    std::string label = row.strategy;
+    const auto differs = [&](std::string Row::*what) {
+        return std::any_of(report.rows.begin(), report.rows.end(), [&](const Row& other) {
+            return other.strategy == row.strategy && other.spp == row.spp && other.gpu == row.gpu &&
+                   other.group == row.group && other.*what != row.*what;
+        });
+    };
+    for (std::string Row::*what : {&Row::parameters, &Row::sequence, &Row::thread_map, &Row::scene})
+        if (differs(what)) label += ", " + row.*what;
+    return fmt::format("{}, N {}, {}{}", label, row.spp, row.gpu, report.by == GroupBy::none ? "" : ", " + row.group);
 }
 
 Report make_report(const std::vector<Series>& all_series, const std::string& baseline, GroupBy by) {
@@ -180,6 +193,7 @@ Report make_report(const std::vector<Series>& all_series, const std::string& bas
         if (draft.row.samples.size() == 1) notes.add("one sample index: no confidence interval");
         report.rows.push_back(draft.row);
     }
+    note_compulsory(report, notes);
     return report;
 }
 

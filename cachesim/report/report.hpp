@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cachesim/replay/statistics.hpp"
+#include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
 
@@ -32,12 +33,20 @@ struct Estimate {
 
 /// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B, with
 /// x L3 miss rate where there is an L3, and the GPU's own sector size. A level's miss rate is what it fetches over what
-/// it is asked for. Each factor is this strategy's over the baseline's; their product is the ratio of DRAM bytes/ray
+/// it is asked for, of L1 per visit: each distinct sector of a warp access once. Each factor is this strategy's over
+/// the baseline's, with its interval, paired by sample index; the product of the means is the ratio of DRAM bytes/ray
 /// exactly, computed from totals over all sample indices.
 struct Factors {
-    double work = 1, simt_efficiency = 1, coalescing = 1, l1_locality = 1, l2_locality = 1;
-    double l3_locality = 1;  ///< 1 where there is no L3
-    double product() const { return work * simt_efficiency * coalescing * l1_locality * l2_locality * l3_locality; }
+    Estimate work{1, {}}, simt_efficiency{1, {}}, coalescing{1, {}}, l1_locality{1, {}}, l2_locality{1, {}};
+    Estimate l3_locality{1, {}};  ///< 1 where there is no L3
+    /// Products of these: all before the caches, the ratio that would remain with equal miss rates; all miss rates; and
+    /// those of L1 and L2.
+    Estimate equal_miss_rates{1, {}}, cache_locality{1, {}}, l1_l2_locality{1, {}};
+
+    double product() const {
+        return work.mean * simt_efficiency.mean * coalescing.mean * l1_locality.mean * l2_locality.mean *
+               l3_locality.mean;
+    }
 };
 
 enum class GroupBy { none, bounce, ray, object };  ///< ray: camera, bounce, shadow; object: node, triangle, texel
@@ -51,16 +60,22 @@ struct Row {
     std::vector<std::uint32_t> samples;
     Counters totals;         ///< over all sample indices; in groups by object, `rays` are those of the whole launch
     Counters loads, stores;  ///< of totals: what reads and what writes; sorts are neither
+    /// l1_hit_rate: of requests, as Nsight Compute counts (l1tex__t_sector_hit_rate): every load of a visit asks for
+    /// its sectors, so most requests hit what an earlier load fetched (LoadCounter).
     Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
         dram_bytes_per_ray;
-    /// As profilers count: every load asks for its sectors, so most requests of a visit hit (LoadCounter).
-    Estimate l1_request_hit_rate;
+    /// Of visits: of the distinct sectors of each warp access, those found in L1. As many misses, fewer hits; 1 minus
+    /// it is the L1 miss rate of the traffic identity.
+    Estimate l1_visit_hit_rate;
+    /// Of the sectors read from DRAM, those that no cache of the GPU held before: compulsory misses, which come of
+    /// beginning each launch with cold caches.
+    Estimate dram_compulsory_share;
     std::optional<Estimate> l3_hit_rate, l3_bytes_per_ray;  ///< bytes that L2 asks of L3; absent where there is no L3
     /// Of dram_bytes_per_ray: what kernels write, and what sorts move. Absent where no trace is of a wavefront.
     std::optional<Estimate> written_bytes_per_ray, sort_bytes_per_ray;
     /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline
     /// itself or where there is none or its sample indices differ (a note says so).
-    std::optional<Estimate> l2_bytes_ratio, dram_bytes_ratio;
+    std::optional<Estimate> l2_bytes_ratio, l3_bytes_ratio, dram_bytes_ratio;  ///< l3: absent where there is no L3
     std::optional<Factors> factors;
 };
 
@@ -76,10 +91,16 @@ struct Report {
     bool has_wavefront() const;
 };
 
+/// What a sentence calls a row: "micro-jitter, N 64, gtx-980-ti", and what else tells it from others.
+std::string row_label(const Report&, const Row&);
+
 /// Throws UsageError if `baseline` was given by the user but is in no series.
 Report make_report(const std::vector<Series>&, const std::string& baseline, GroupBy);
 
-std::string to_text(const Report&);
+/// Tables of at most `width` columns where they can be so narrow: TextTable.
+std::string to_text(const Report&, std::size_t width = text_width);
+/// The table of factors alone, with a title and a legend; nothing where no row has any.
+std::string factor_table(const Report&, std::size_t width);
 std::string to_json(const Report&);
 std::string to_csv(const Report&);
 

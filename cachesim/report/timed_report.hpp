@@ -8,6 +8,7 @@
 
 #include "cachesim/replay/timed/timed_statistics.hpp"
 #include "cachesim/report/report.hpp"
+#include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
 
@@ -37,13 +38,20 @@ struct TimedRow {
 struct TimedReport {
     std::string baseline;
     std::vector<TimedRow> rows;
+    /// What the functional replay counts of the same launches, row by row; no rows where none was made.
+    Report traffic;
     std::vector<std::string> notes;
 };
 
-/// Throws UsageError if `baseline` was given by the user but is in no series.
-TimedReport make_timed_report(const std::vector<TimedSeries>&, const std::string& baseline);
+/// `traffic`: functional replays of the same launches, series by series in the same order, or none. Throws UsageError
+/// if `baseline` was given by the user but is in no series.
+TimedReport make_timed_report(const std::vector<TimedSeries>&, const std::string& baseline,
+                              const std::vector<Series>& traffic = {});
 
-std::string to_text(const TimedReport&);
+/// What there is to say of a row against its baseline, in time and bytes; none without a ratio.
+std::optional<Verdict> verdict_of(const TimedReport&, std::size_t row);
+
+std::string to_text(const TimedReport&, std::size_t width = text_width);
 std::string to_json(const TimedReport&);
 std::string to_csv(const TimedReport&);
 

@@ -117,6 +117,7 @@ TEST_CASE("the classes add up to the misses of the replay in every cut") {
     CHECK(l1.all().misses() == all.l2_sectors);
     CHECK(l2.all().lookups == all.l2_sectors);
     CHECK(l2.all().misses() == all.dram_sectors);
+    CHECK(l2.all().compulsory == all.dram_first_sectors);
     CHECK(e.findings.sharing.hits() == all.l1_hits);
     CHECK(l1.all().conflict > 0);
     CHECK(l1.all().lucky_hits > 0);

@@ -2,6 +2,7 @@
 #include "cachesim/report/explanation.hpp"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/waterfall.hpp"
@@ -52,72 +53,87 @@ Explanation explanation(const std::vector<Counters>& base, const std::vector<Cou
 }  // namespace
 
 TEST_CASE("the factors of two hand-made counts multiply to their ratio of DRAM bytes per ray") {
-    const auto f = traffic_factors(plain, better, 2);
+    const auto f = traffic_factors({plain}, {better}, 2);
     REQUIRE(f);
-    CHECK(f->work == 1);
-    CHECK(f->simt_efficiency == 0.5);
-    CHECK(f->coalescing == 1);
-    CHECK(f->l1_locality == 1);
-    CHECK(f->l2_locality == 1.5);
+    CHECK(f->work.mean == 1);
+    CHECK(f->simt_efficiency.mean == 0.5);
+    CHECK(f->coalescing.mean == 1);
+    CHECK(f->l1_locality.mean == 1);
+    CHECK(f->l2_locality.mean == 1.5);
     CHECK(f->product() == 0.75);
-    CHECK_FALSE(traffic_factors(plain, counters(10, 0, 0, 0, 0, 0), 2));
+    CHECK_FALSE(traffic_factors({plain}, {counters(10, 0, 0, 0, 0, 0)}, 2));
 }
 
 TEST_CASE("an L3 has a factor of its own") {
     Counters base = plain, other = better;
     base.l3_sectors = 160;
     other.l3_sectors = 80;
-    const auto f = traffic_factors(base, other, 3);
+    const auto f = traffic_factors({base}, {other}, 3);
     REQUIRE(f);
-    CHECK(f->l2_locality == 1);
-    CHECK(f->l3_locality == 1.5);
+    CHECK(f->l2_locality.mean == 1);
+    CHECK(f->l3_locality.mean == 1.5);
     CHECK(f->product() == 0.75);
     CHECK(factor_terms(3).size() == 6);
 }
 
-TEST_CASE("the main term is the one that moves furthest in the direction of the whole") {
-    const auto most = main_term(*traffic_factors(plain, better, 2));
-    REQUIRE(most);
-    CHECK(std::string(most->term->name) == "SIMT efficiency");
-    CHECK(most->share > 1);  // L2 locality works against it
-    CHECK_THAT(most->meaning(), Contains("less divergence"));
-    const auto worse = main_term(*traffic_factors(better, plain, 2));
-    REQUIRE(worse);
-    CHECK(worse->factor == 2);
-    CHECK_THAT(worse->meaning(), Contains("more divergence"));
-    CHECK_FALSE(main_term(Factors{}));
-}
-
-TEST_CASE("the sentence says how much, what does most, and what is a matter of caches") {
+TEST_CASE("the sentence says how much at every level, why, and what is a matter of caches") {
     const std::string one = sentence(explanation({plain}, {better}));
-    CHECK_THAT(one, StartsWith("clever reads 25.0 % fewer DRAM bytes per ray than plain (192.0 against 256.0) and "
-                               "50.0 % fewer L2-to-L1 bytes; SIMT efficiency does most, x0.500 "));
-    CHECK_THAT(one, Contains("with equal miss rates x0.500 would remain, the miss rates give x1.500"));
+    CHECK_THAT(one,
+               StartsWith("clever reads 50.0 % fewer L2-to-L1 bytes per ray than plain (512.0 against 1024), most by "
+                          "SIMT efficiency, x0.500 (fewer warp accesses per step: less divergence); 25.0 % fewer "
+                          "DRAM bytes per ray (192.0 against 256.0), most by SIMT efficiency"));
+    CHECK_THAT(one,
+               Contains("with equal miss rates x0.500 of the DRAM bytes would remain, the miss rates give x1.500"));
     CHECK_THAT(one, EndsWith("from one sample index, so without a confidence interval."));
-    CHECK_THAT(sentence(explanation({plain, plain}, {better, better})), EndsWith("give x1.500."));
+    const std::string two = sentence(explanation({plain, plain}, {better, better}));
+    CHECK_THAT(two, StartsWith("clever reads 50.0 ±0.0 % fewer L2-to-L1 bytes per ray than plain"));
+    CHECK_THAT(two, EndsWith("give x1.500 ±0.000."));
 }
 
 TEST_CASE("the sentence does not claim what the sample indices do not show") {
-    CHECK_THAT(sentence(explanation({plain, plain}, {better, counters(10, 400, 80, 640, 320, 81)})),
-               EndsWith("no certain difference."));
+    const std::string text = sentence(explanation({plain, plain}, {better, counters(10, 400, 80, 640, 320, 81)}));
+    CHECK_THAT(text, Contains("more DRAM bytes per ray") && Contains("no certain difference"));
+    CHECK_THAT(text, !Contains("most by"));
+    CHECK_THAT(text, Contains("--trace-samples"));
     CHECK_THAT(sentence(explanation({counters(10, 400, 80, 640, 0, 0)}, {plain})), Contains("no ratio"));
 }
 
 TEST_CASE("the sentence says that there is no difference where there is none") {
     CHECK(sentence(explanation({plain}, {plain})) ==
-          "There is no difference: clever reads as many DRAM bytes per ray as plain, 256.0, and as many L2-to-L1 "
-          "bytes.");
+          "There is no difference: clever reads as many bytes per ray as plain from every level.");
     CHECK_THAT(sentence(explanation({plain, better}, {plain, better})), StartsWith("There is no difference: "));
     Counters other = plain;
     other.l2_sectors /= 2;
     CHECK_THAT(sentence(explanation({plain}, {other})),
-               StartsWith("clever reads as many DRAM bytes per ray as plain (256.0 against 256.0) and 50.0 % fewer"));
+               StartsWith("clever reads 50.0 % fewer") && Contains("as many DRAM bytes per ray (256.0 against 256.0)"));
     Counters base = plain;
     base.dram_sectors = 1'000'000;
     other = base;
     other.dram_sectors += 1;
     CHECK_THAT(sentence(explanation({base}, {other})),
-               StartsWith("clever reads 0.0001 % more DRAM bytes per ray than"));
+               StartsWith("clever reads as many L2-to-L1 bytes per ray as plain") &&
+                   Contains("0.0001 % more DRAM bytes per ray"));
+}
+
+TEST_CASE("an explanation names both L1 hit rates, and compulsory misses where DRAM sees little else") {
+    Counters base = plain, other = better;
+    base.l1_requests = 3200;
+    base.l1_hits = base.sectors - base.l2_sectors;
+    base.dram_first_sectors = 80;
+    other.l1_requests = 1600;
+    other.l1_hits = other.sectors - other.l2_sectors;
+    other.dram_first_sectors = 59;
+    const Explanation e = explanation({base, base}, {other, other});
+    const std::string text = to_text(e);
+    CHECK_THAT(text, Contains("L1 visit miss rate") && Contains("(l1tex__t_sector_hit_rate): 90.0 and 90.0"));
+    CHECK_THAT(text, Contains("note: small: at least 95 % of the sectors read from DRAM are compulsory"));
+    const auto json = nlohmann::json::parse(to_json(e));
+    CHECK(json["base"]["l1_hit_rate"] == 0.9);
+    CHECK(json["base"]["l1_visit_hit_rate"] == 0.5);
+    CHECK(json["other"]["dram_compulsory_share"] == 59.0 / 60);
+    CHECK(json["factors"]["simt_efficiency"]["factor"]["mean"] == 0.5);
+    CHECK(json["verdict"]["level"] == "l2_bytes");
+    CHECK_THAT(to_text(explanation({plain, plain}, {better, better})), !Contains("compulsory misses (first"));
 }
 
 TEST_CASE("an explanation of nothing is still a text") {

@@ -135,6 +135,7 @@ private:
                 asked = answer.fetched;
             }
             c.dram_sectors += asked.size();
+            for (const unsigned sector : asked) c.dram_first_sectors += held_.emplace(line, sector).second;
         }
     }
 
@@ -177,6 +178,7 @@ private:
     std::vector<unsigned> last_;                        ///< per SM: slot of the last turn
     std::vector<std::vector<NaiveCache>> caches_;       ///< of each level
     std::map<std::pair<traces::RayType, std::uint8_t>, RayGroup> groups_;
+    std::set<std::pair<std::uint64_t, unsigned>> held_;  ///< lines and sectors that ever came from DRAM
 };
 
 }  // namespace

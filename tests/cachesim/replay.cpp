@@ -63,6 +63,7 @@ TEST_CASE("a tiny launch counts as computed by hand") {
     expected.l2_sectors = 10;
     expected.l2_hits = 4;
     expected.dram_sectors = 6;
+    expected.dram_first_sectors = 6;
     CHECK(s.groups[0].by_kind[0] == expected);
     expected.rays = 4;
     CHECK(s.all() == expected);
@@ -104,6 +105,8 @@ TEST_CASE("hits and misses add up, and what one level misses the next is asked f
     CHECK(c.sectors == c.l1_hits + c.l2_sectors);
     CHECK(c.l2_sectors == c.l2_hits + c.dram_sectors);
     CHECK(c.dram_sectors > 0);
+    CHECK(c.dram_first_sectors > 0);
+    CHECK(c.dram_first_sectors <= c.dram_sectors);
     CHECK(c.l1_hits > 0);
     CHECK(c.l2_hits > 0);
 }

@@ -42,7 +42,7 @@ TEST_CASE("the product of the factors is the traffic ratio") {
         REQUIRE(r.rows[1].factors);
         CHECK(r.rows[1].factors->product() == Approx(r.rows[1].dram_bytes_ratio->mean).epsilon(1e-12));
         const Factors& f = *r.rows[1].factors;
-        CHECK(f.product() / f.l2_locality == Approx(r.rows[1].l2_bytes_ratio->mean).epsilon(1e-12));
+        CHECK(f.product() / f.l2_locality.mean == Approx(r.rows[1].l2_bytes_ratio->mean).epsilon(1e-12));
     }
 }
 
@@ -53,11 +53,11 @@ TEST_CASE("the factors of a small case are as computed by hand") {
     REQUIRE(r.rows.size() == 4);
     CHECK(r.rows[2].group == "camera");
     const Factors& f = *r.rows[2].factors;
-    CHECK(f.work == 0.5);
-    CHECK(f.simt_efficiency == 0.5);
-    CHECK(f.coalescing == 2);
-    CHECK(f.l1_locality == 0.5);
-    CHECK(f.l2_locality == 0.5);
+    CHECK(f.work.mean == 0.5);
+    CHECK(f.simt_efficiency.mean == 0.5);
+    CHECK(f.coalescing.mean == 2);
+    CHECK(f.l1_locality.mean == 0.5);
+    CHECK(f.l2_locality.mean == 0.5);
     CHECK(r.rows[2].dram_bytes_ratio->mean == 0.125);
     CHECK(r.rows[2].dram_bytes_per_ray.mean == 32 * 250.0 / 200);
 }
@@ -131,21 +131,27 @@ TEST_CASE("the text report is a readable table") {
         text ==
         R"(strategy       N  GPU          rays  steps/ray  lanes/acc  sectors/acc  L1 %  L2 %  L2->L1 B/ray    DRAM B/ray    DRAM ratio
 ------------  --  ----------  -----  ---------  ---------  -----------  ----  ----  ------------  ------------  ------------
-rotation      64  gtx-980-ti  3 150       39.5       6.64         8.48  52.8  87.0   761.9 ±73.8  99.05 ±36.88      baseline
-micro-jitter  64  gtx-980-ti  3 120       38.0       8.14         8.35  66.7  87.8    415.4 ±7.5  50.77 ±33.83  0.513 ±0.151
+rotation      64  gtx-980-ti  3 150       39.5       6.64         8.48  76.4  87.0   761.9 ±73.8  99.05 ±36.88      baseline
+micro-jitter  64  gtx-980-ti  3 120       38.0       8.14         8.35  83.3  87.8    415.4 ±7.5  50.77 ±33.83  0.513 ±0.151
 
-rays: all sample indices together; step: one lane's visit to a node or triangle; acc: warp access; L1 %, L2 %: sectors found;
-B/ray: bytes read; ±: 95 % confidence over sample indices; DRAM ratio: DRAM B/ray over that of rotation.
+rays: all sample indices together; step: one lane's visit to a node or triangle; acc: warp access;
+L1 %: hits of load requests, as Nsight Compute counts (l1tex__t_sector_hit_rate); L2 %: of sectors
+asked for; B/ray: bytes read, by launches that begin with cold caches; ±: half width of the 95 %
+confidence interval over sample indices; DRAM ratio: DRAM B/ray over that of rotation.
 
 Where the ratios to rotation come from; below 1 is better
 
-strategy       N  GPU          work  x SIMT efficiency  x coalescing  x L1 locality  = L2->L1 ratio  x L2 locality  = DRAM ratio
-------------  --  ----------  -----  -----------------  ------------  -------------  --------------  -------------  ------------
-micro-jitter  64  gtx-980-ti  0.961              0.815         0.985          0.707    0.545 ±0.043          0.940  0.513 ±0.151
+strategy       N  GPU           work    SIMT   coal.  L1 loc.  =L2->L1  L2 loc.   =DRAM
+------------  --  ----------  ------  ------  ------  -------  -------  -------  ------
+micro-jitter  64  gtx-980-ti   0.961   0.815   0.985    0.707    0.545    0.940   0.513
+                              ±0.134  ±0.113  ±0.178   ±0.073   ±0.043   ±0.202  ±0.151
 
-work: steps/ray; SIMT efficiency: warp accesses/step; coalescing: sectors/warp access; L1, L2 locality: miss rates; each over the baseline's.
+work: steps/ray; SIMT (efficiency): warp accesses/step; coal.(escing): sectors/warp access; L1
+loc.(ality): miss rate of visits, L2 loc.: miss rate of sectors asked for; each over the baseline's.
+Their product is the ratio exactly.
 
-micro-jitter, N 64, gtx-980-ti: 48.7 % fewer DRAM bytes/ray, most by L1 locality, x0.707 (lower L1 miss rate).
+micro-jitter, N 64, gtx-980-ti: 45.5 ±4.3 % fewer L2-to-L1 bytes/ray, most by L1 locality, x0.707
+  ±0.073 (lower L1 miss rate of visits); 48.7 ±15.1 % fewer DRAM bytes/ray.
 )");
     std::size_t start = 0;
     for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
@@ -176,9 +182,9 @@ TEST_CASE("with three levels the product of the factors is the traffic ratio, an
     CHECK(camera.factors->product() == Approx(camera.dram_bytes_ratio->mean).epsilon(1e-12));
     CHECK(camera.l3_hit_rate->mean == Approx(0.75).epsilon(0.01));
     CHECK_FALSE(r.rows[4].l3_hit_rate);
-    CHECK(r.rows[6].factors->l3_locality == 1);
+    CHECK(r.rows[6].factors->l3_locality.mean == 1);
     const std::string text = to_text(r);
-    for (const char* title : {" L3 % ", "L3->L2 B/ray", "x L3 locality"}) CHECK_THAT(text, Catch::Contains(title));
+    for (const char* title : {" L3 % ", "L3->L2 B/ray", "L3 loc.", "=L3->L2"}) CHECK_THAT(text, Catch::Contains(title));
     const auto json = nlohmann::json::parse(to_json(r));
     CHECK(json["rows"][2]["l3_hit_rate"]["mean"] == camera.l3_hit_rate->mean);
     CHECK(json["rows"][4]["l3_hit_rate"].is_null());

@@ -17,6 +17,7 @@ inline Counters counters(std::uint64_t rays, std::uint64_t steps, std::uint64_t 
     c.steps = c.lane_accesses = steps;
     c.warp_accesses = accesses;
     c.sectors = sectors;
+    c.l1_requests = 2 * sectors;  // each sector is asked for by two loads
     c.l2_sectors = l2;
     c.l1_hits = sectors - l2;
     c.dram_sectors = dram;

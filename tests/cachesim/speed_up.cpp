@@ -41,16 +41,17 @@ std::vector<SpeedUp> of(const TimedStatistics& base, const TimedStatistics& othe
 
 TEST_CASE("a speed-up is work or divergence as far as perfect caches leave it, and locality where traffic falls") {
     const std::string text = sentence(of(times(1500, 200, 800), times(1000, 100, 400), 1.2));
-    CHECK_THAT(text,
-               StartsWith("1.50x ±0.00 predicted; 1.20x would remain with perfect caches (fewer divergent steps); the "
-                          "other 1.25x is locality: L1-to-L2 traffic per ray is 50 % lower"));
+    CHECK_THAT(
+        text,
+        StartsWith("1.50x ±0.00 predicted; 1.20x ±0.00 would remain with perfect caches (fewer divergent steps); the "
+                   "other 1.25x ±0.00 is locality: L1-to-L2 traffic per ray is 50 % lower"));
     CHECK_THAT(text, EndsWith("DRAM traffic 50 % lower."));
 }
 
 TEST_CASE("what the caches add against the traffic is not called locality") {
-    CHECK_THAT(sentence(of(times(1500, 100, 400), times(1000, 100, 800), 1.2)), Contains("1.25x is no locality"));
+    CHECK_THAT(sentence(of(times(1500, 100, 400), times(1000, 100, 800), 1.2)), Contains("1.25x ±0.00 is no locality"));
     CHECK_THAT(sentence(of(times(1100, 100, 400), times(1000, 100, 800), 1.3)),
-               Contains("more traffic takes 1.18x of it back: L1-to-L2 traffic per ray is 100 % higher"));
+               Contains("more traffic takes 1.18x ±0.00 of it back: L1-to-L2 traffic per ray is 100 % higher"));
     CHECK_THAT(sentence(of(times(1300, 100, 400), times(1000, 100, 400), 1.3)),
                Contains("the caches add nothing to it: L1-to-L2 traffic per ray is unchanged"));
 }
@@ -77,4 +78,23 @@ TEST_CASE("times of a GPU that is mostly empty are said to be those of the longe
                         "those of the longest warps and no statement on throughput."));
     CHECK(few.occupancy() == 0.3);
     CHECK(sentence(of(times(10, 0, 0), times(10, 0, 0), 1)) == "No speed-up to predict: a trace has no accesses.");
+}
+
+TEST_CASE("what remains of a speed-up is put down to what points its way, and its parts have intervals") {
+    // With perfect caches slower, although warps diverge less: more work, of which there is enough.
+    TimedStatistics more_work = times(1000, 90, 400);
+    more_work.lane_accesses = 4000;
+    CHECK_THAT(sentence(of(times(1000, 100, 400), more_work, 0.8)), Contains("(more work per ray)"));
+    CHECK_THAT(sentence(of(times(1000, 100, 400), times(1000, 100, 400), 0.8)), Contains("neither work nor SIMT"));
+
+    auto all = of(times(1500, 200, 800), times(1000, 100, 400), 1.2);
+    all[0].base_cycles = {800, 700};
+    const Estimate part = locality_part(all);
+    CHECK(part.mean == Approx(1.25));
+    REQUIRE(part.half_width);
+    CHECK(*part.half_width > 0.05);
+    CHECK_THAT(sentence(all), Contains("what the caches add, 1.25x ±"));
+    CHECK(all[0].value().mean == Approx(part.mean * all[1].value().mean).epsilon(1e-12));
+    CHECK(gain({200, 300}, {100, 150}).mean == 2);
+    CHECK(*gain({200, 300}, {100, 150}).half_width == Approx(0).margin(1e-12));
 }

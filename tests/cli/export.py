@@ -32,7 +32,7 @@ index = "xor_fold"
 policy = "lru"
 """)
         totals = self.succeeds("replay", trace, "--gpu", "tiny.toml", "--json").json["rows"][0]["totals"]
-        sums = {"sectors": 0, "l1_hits": 0, "l2_sectors": 0, "l2_hits": 0}
+        sums = {"sectors": 0, "l1_visit_hits": 0, "l2_sectors": 0, "l2_hits": 0}
         for launch in (0, 1):
             for sm in (["--sm", "0"], ["--sm", "1"], ["--level", "l2"]):
                 self.succeeds("export", trace, "--gpu", "tiny.toml", *sm, "--launch", launch, "--format", "csv", "-o",
@@ -41,7 +41,7 @@ policy = "lru"
                     rows = list(csv.DictReader(file))
                 level = "l2" if "l2" in sm else "l1"
                 sums["l2_sectors" if level == "l2" else "sectors"] += len(rows)
-                sums[level + "_hits"] += sum(row["hit"] == "1" for row in rows)
+                sums["l2_hits" if level == "l2" else "l1_visit_hits"] += sum(row["hit"] == "1" for row in rows)
         totals["l2_hits"] = totals["l2_sectors"] - totals["dram_sectors"]
         self.assertEqual(sums, {key: totals[key] for key in sums})
 

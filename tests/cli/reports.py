@@ -22,7 +22,7 @@ class Reports(ProgramTest):
                 for strategy, totals in whole.items():
                     rows = [row for row in report["rows"] if row["strategy"] == strategy]
                     self.assertGreaterEqual(len({row["group"] for row in rows}), expected)
-                    for key in ("steps", "lane_accesses", "sectors", "l1_hits", "l2_sectors", "dram_sectors"):
+                    for key in ("steps", "lane_accesses", "sectors", "l1_hits", "l1_visit_hits", "l2_sectors", "dram_sectors"):
                         self.assertEqual(sum(row["totals"][key] for row in rows), totals[key], key)
                     if by != "object":
                         self.assertEqual(sum(row["totals"]["rays"] for row in rows), totals["rays"])
@@ -41,7 +41,8 @@ class Reports(ProgramTest):
         for row in compared:
             product = 1
             for factor in row["factors"].values():
-                product *= factor
+                product *= factor["mean"]
+                self.assertGreaterEqual(factor["half_width_95"], 0)
             self.assertAlmostEqual(product / row["dram_bytes_ratio"]["mean"], 1, delta=1e-9)
             self.assertGreater(row["dram_bytes_ratio"]["half_width_95"], 0)
 
@@ -129,7 +130,7 @@ class Reports(ProgramTest):
     def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
         command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]
         text = self.succeeds(*command).text
-        for title in ("L3 %", "L3->L2 B/ray", "x L3 locality"):
+        for title in ("L3 %", "L3->L2 B/ray", "L3 loc."):
             self.assertIn(title, text)
         self.assertNotIn("L3", self.succeeds(*COMPARE).text)
         for row in self.succeeds(*command, *GPU, "--json").json["rows"]:

@@ -1,0 +1,100 @@
+"""What the page of report.py shows of the JSON of `raycache compare`: rows, labels, and numbers as text."""
+import re
+
+FACTORS = [  # key in the JSON, name, what it says
+    ("work", "work", "BVH nodes and triangles visited per ray"),
+    ("simt_efficiency", "SIMT efficiency", "warp accesses per visit: fewer if more lanes of a warp work at once"),
+    ("coalescing", "coalescing", "32-byte sectors per warp access: fewer if the lanes read the same or neighbouring places"),
+    ("l1_locality", "L1 locality", "share of these sectors that L1 does not have"),
+    ("l2_locality", "L2 locality", "share of those that L2 does not have either"),
+    ("l3_locality", "L3 locality", "share of those that L3 does not have either"),
+]
+
+
+class BadInput(Exception):
+    pass
+
+
+def present(estimate):
+    return estimate is not None and estimate["mean"] is not None
+
+
+def half_width(estimate):
+    return (estimate["half_width_95"] or 0) if present(estimate) else 0
+
+
+def is_certain(ratio):
+    """Whether the 95 % interval of a ratio does not hold 1."""
+    return present(ratio) and ratio["half_width_95"] is not None and abs(ratio["mean"] - 1) > ratio["half_width_95"]
+
+
+def fixed(estimate, digits):
+    return f"{estimate['mean']:.{digits}f}" if present(estimate) else "\u2013"
+
+
+def percent(estimate):
+    return f"{100 * estimate['mean']:.1f} %" if present(estimate) else "\u2013"
+
+
+def interval(estimate, digits=None):
+    """About four digits, or so many decimals, and the half width to the same place."""
+    if not present(estimate):
+        return "\u2013"
+    mean, half = estimate["mean"], estimate["half_width_95"]
+    if digits is None:
+        digits = 0 if abs(mean) >= 1000 else 1 if abs(mean) >= 100 else 2 if abs(mean) >= 10 else 3
+    return f"{mean:.{digits}f}" + ("" if half is None else f" \u00b1{half:.{digits}f}")
+
+
+def change(ratio):
+    """Such as "31 \u00b14 % less"."""
+    size = 100 * abs(1 - ratio["mean"])
+    width = "" if ratio["half_width_95"] is None else f" \u00b1{100 * ratio['half_width_95']:.{0 if size >= 10 else 1}f}"
+    return f"{size:.{0 if size >= 10 else 1}f}{width} % {'less' if ratio['mean'] < 1 else 'more'}"
+
+
+def distinct(values):
+    return list(dict.fromkeys(values))
+
+
+class Comparison:
+    """The rows, sorted into settings (what the strategies share, except N) and labels (what tells strategies apart)."""
+
+    def __init__(self, report):
+        # A row of `compare --timed` has the figures of one without under "traffic".
+        self.rows = [{"group": "all", **row, **(row.get("traffic") or {}), "verdict": row.get("verdict")}
+                     for row in report["rows"]]
+        if not self.rows:
+            raise BadInput("no rows; run 'raycache compare' first")
+        if any("dram_bytes_per_ray" not in row for row in self.rows):
+            raise BadInput("rows without traffic")
+        self.baseline = report["baseline"]
+        self.notes = report["notes"]
+        self.grouped = report.get("by", "none") != "none"
+        self.timed = any("cycles" in row for row in self.rows)
+        self.has_l3 = any("l3_hit_rate" in row for row in self.rows)
+        self.factors = [factor for factor in FACTORS if self.has_l3 or factor[0] != "l3_locality"]
+        fields = [f for f in ("scene", "sequence", "thread_map") if len({r[f] for r in self.rows}) > 1]
+        seen = [(self.setting(r), r["strategy"], r["spp"], r["group"]) for r in self.rows]
+        self.ambiguous = {entry[1] for entry in seen if seen.count(entry) > 1}
+        self.settings = distinct(self.setting(r) for r in self.rows)
+        self.titles = {self.setting(r): ", ".join([r["gpu"], *(r[f] for f in fields)]) for r in self.rows}
+        self.labels = distinct(self.label(r) for r in self.rows)
+
+    @staticmethod
+    def setting(row):
+        return row["gpu"], row["scene"], row["sequence"], row["thread_map"]
+
+    def label(self, row):
+        """The strategy, with what tells it from another row of the same name: its K where it has one."""
+        if row["strategy"] not in self.ambiguous or not row["parameters"]:
+            return row["strategy"]
+        k = re.match(r"K=(\S+)", row["parameters"])
+        return f"{row['strategy']}, K = {k[1]}" if k else f"{row['strategy']} ({row['parameters']})"
+
+    def of(self, setting):
+        return [r for r in self.rows if self.setting(r) == setting]
+
+    def compared(self):
+        """The rows that have a ratio to the baseline."""
+        return [r for r in self.rows if present(r["l2_bytes_ratio"]) and present(r["dram_bytes_ratio"])]
