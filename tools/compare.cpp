@@ -20,20 +20,36 @@ struct Options {
     std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter"};
     std::vector<std::string> sequences{"sobol"};
     std::vector<std::uint64_t> spp{64};
+    std::vector<std::string> ks{"2.5"};
     SamplingOptions sampling;
     ReportOptions report;
     ThreadOptions threads;
 };
 
-void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus, Progress& progress) {
-    std::vector<tracer::CaptureSettings> settings;
-    std::set<std::string> warnings;
+/// One for each sequence, N, strategy and K; a strategy without K once.
+std::vector<tracer::CaptureSettings> settings_of(const Options& o) {
+    std::vector<tracer::CaptureSettings> all;
+    std::set<std::string> seen;
     for (const std::string& sequence : o.sequences)
         for (const std::uint64_t spp : o.spp)
-            for (const std::string& strategy : o.strategies) {
-                settings.push_back(o.sampling.capture(o.scene, sequence, strategy, spp));
-                warnings.insert(settings_warning(settings.back()));
-            }
+            for (const std::string& strategy : o.strategies)
+                for (const std::string& k : o.ks) {
+                    SamplingOptions sampling = o.sampling;
+                    sampling.k = k;
+                    const auto settings = sampling.capture(o.scene, sequence, strategy, spp);
+                    const tracer::SamplingStrategy made(settings.strategy,
+                                                        tracer::path_dimensions(settings.paths.bounces));
+                    if (o.ks.size() == 1 ||
+                        seen.insert(fmt::format("{} {} {} {}", sequence, spp, strategy, made.parameters())).second)
+                        all.push_back(settings);
+                }
+    return all;
+}
+
+void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus, Progress& progress) {
+    const std::vector<tracer::CaptureSettings> settings = settings_of(o);
+    std::set<std::string> warnings;
+    for (const auto& s : settings) warnings.insert(settings_warning(s));
     for (const std::string& w : warnings)
         if (!w.empty()) warn(w);
     advise_if_interrupted(
@@ -88,6 +104,14 @@ void add_compare(CLI::App& app) {
     o->sampling.add_execution(*command);
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
+    command->remove_option(command->get_option("--k"));  // of one strategy; here it is a list
+    command
+        ->add_option("--k", o->ks,
+                     "K of micro-jitter's mu = min(1, K * N^(-1/s)), or 'discrepancy': (N * D*_N)^(1/s); several, "
+                     "separated by commas, make a row each")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->capture_default_str();
     o->report.add(*command, true);
     o->threads.add(*command);
     command->footer(

@@ -11,6 +11,7 @@ import base64
 import html
 import json
 import pathlib
+import re
 import sys
 
 sys.dont_write_bytecode = True
@@ -49,16 +50,25 @@ COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Thos
 ]
 
 
-def price(row, quality):
+def quality_command(row, settings):
+    """The command that measures this row's picture against the baseline's, as it would be typed."""
+    words = ["raycache quality", settings.get("scene") or row["scene"]]
+    for option in ("detail", "camera", "eye", "look_at", "fov"):
+        if settings.get(option) not in (None, "", 0):
+            words.append(f"--{option.replace('_', '-')} {settings[option]}")
+    k = re.match(r"K=(\S+)", row["parameters"])
+    words += [f"--spp {row['spp']}", *([f"--k {k[1]}"] if k else []), f"--strategy cranley-patterson,{row['strategy']}"]
+    return " ".join(words + ["--resolution 128x128"])
+
+
+def price(row, quality, settings):
     """What the row costs in picture quality: a sentence from `raycache quality`, or where to find it."""
-    label = html.escape(row["strategy"])
     match = [q for q in (quality or {"rows": []})["rows"]
              if (q["strategy"], q["sequence"], q["parameters"], q["spp"]) ==
              (row["strategy"], row["sequence"], row["parameters"], row["spp"])]
     if not match:
-        scene = html.escape(row["scene"])
-        return (f"What that costs in picture quality is not on this page: <code>raycache quality {scene} --strategy "
-                f"cranley-patterson,{label} --spp {row['spp']}</code> measures it, and <code>raycache sweep</code> weighs both.")
+        return (f"What that costs in picture quality is not on this page: <code>{html.escape(quality_command(row, settings))}</code> "
+                f"measures it, and <code>raycache sweep</code> weighs both.")
     own, base = match[0], next((q for q in quality["rows"] if q["strategy"] == quality["baseline"] and q["spp"] == row["spp"]), None)
     of_base = f" ({html.escape(quality['baseline'])}: {measured(base['r8'])})" if base else ""
     return (f"The price is picture quality: the error that 8x8 pixels share, which eyes see as patches, is "
@@ -112,7 +122,7 @@ def headline(comparison, quality):
     else:
         first = f"{where} <b>{bytes_text}</b> than {baseline}" + \
             (", but that makes no certain difference in predicted time." if present(best.get("speed_up")) else ".")
-    return [first, price(best, quality)]
+    return [first, price(best, quality, comparison.command)]
 
 
 def findings(comparison):

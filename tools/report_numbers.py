@@ -70,6 +70,7 @@ class Comparison:
             raise BadInput("rows without traffic")
         self.baseline = report["baseline"]
         self.notes = report["notes"]
+        self.command = report.get("settings") or {}
         self.grouped = report.get("by", "none") != "none"
         self.timed = any("cycles" in row for row in self.rows)
         self.has_l3 = any("l3_hit_rate" in row for row in self.rows)

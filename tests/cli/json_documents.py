@@ -74,7 +74,7 @@ class JsonDocuments(ProgramTest):
     def test_settings_hold_what_was_given_and_every_default(self):
         settings = self.succeeds(*FUSED, "--strategy", "coherent", *GPU, "--k", "discrepancy", "--json").json["settings"]
         for key, value in (("scene", "courtyard"), ("detail", 50000), ("strategy", ["coherent"]), ("sequence", ["sobol"]),
-                           ("spp", [64]), ("k", "discrepancy"), ("s", 2), ("mu", None), ("resolution", "64x48"),
+                           ("spp", [64]), ("k", ["discrepancy"]), ("s", 2), ("mu", None), ("resolution", "64x48"),
                            ("bounces", 3), ("lights", "auto"), ("seed", 1), ("execution", "megakernel"),
                            ("order", "none"), ("timed", False), ("gpu", ["gtx-980-ti"]), ("by", "none"),
                            ("trace_samples", 2)):

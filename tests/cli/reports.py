@@ -51,6 +51,16 @@ class Reports(ProgramTest):
         self.assertEqual([row["dram_bytes_ratio"] for row in report["rows"]], [None, None])
         self.assertNotIn("DRAM ratio", self.succeeds(*COMPARE, "--strategy", "coherent,micro-jitter").text)
 
+    def test_several_k_make_a_row_each_and_a_strategy_without_k_has_one(self):
+        report = self.succeeds(*COMPARE, "--k", "1,2.5", "--json").json
+        rows = [(row["strategy"], row["parameters"].split(" ")[0]) for row in report["rows"]]
+        self.assertEqual(rows, [("coherent", ""), ("cranley-patterson", ""), ("micro-jitter", "K=1"), ("micro-jitter", "K=2.5")])
+        alone = self.succeeds(*COMPARE, "--k", "1", "--json").json["rows"]
+        self.assertEqual([row for row in report["rows"] if "K=2.5" not in row["parameters"]], alone)
+        text = self.succeeds(*COMPARE, "--k", "1,2.5").text
+        self.assertIn("micro-jitter, K=1 s=2", text)
+        self.assertIn("micro-jitter, K=2.5 s=2", text)
+
     def test_csv_and_json_hold_the_same_numbers(self):
         rows = self.succeeds(*COMPARE, "--spp", "16,64", "--json").json["rows"]
         lines = list(csv.DictReader(io.StringIO(self.succeeds(*COMPARE, "--spp", "16,64", "--csv").text)))
