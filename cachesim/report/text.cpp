@@ -91,8 +91,8 @@ std::string main_table(const Report& report, std::size_t width) {
     for (const Column& column : figures) table.column(column.title, column.align, column.rank);
     for (const Row& row : report.rows) {
         std::vector<std::string> cells;
-        for (const auto* columns : {&subjects, &figures})
-            for (const Column& column : *columns) cells.push_back(column.cell(row));
+        for (const Column& column : subjects) cells.push_back(column.cell(row));
+        for (const Column& column : figures) cells.push_back(column.cell(row));
         table.row(std::move(cells));
     }
     return table.text(width);

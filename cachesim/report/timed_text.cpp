@@ -135,7 +135,6 @@ std::string use_table(const TimedReport& report, const Tables& tables, std::size
     for (const Named& r : resources) table.column(fmt::format("{} %", r.name), Align::right);
     for (const Named& r : parts) table.column(fmt::format("{} %", r.name), Align::right, 1);
     for (const TimedRow& row : report.rows) {
-        const TimedStatistics& t = row.totals;
         std::vector<std::string> cells;
         for (const Named& r : resources) cells.push_back(percent(utilisation(row, r)));
         for (const Named& r : parts) cells.push_back(percent(utilisation(row, r)));
