@@ -140,7 +140,7 @@ class Reports(ProgramTest):
     def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
         command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]
         text = self.succeeds(*command).text
-        for title in ("L3 %", "L3->L2 B/ray", "L3 loc."):
+        for title in ("L3 %", "L3->L2", "x L3"):
             self.assertIn(title, text)
         self.assertNotIn("L3", self.succeeds(*COMPARE).text)
         for row in self.succeeds(*command, *GPU, "--json").json["rows"]:
