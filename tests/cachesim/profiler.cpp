@@ -14,7 +14,8 @@ namespace {
 /// Of the first row, by name.
 nlohmann::json metrics_of(const ProfilerReport& profile) {
     nlohmann::json metrics;
-    for (const auto& metric : nlohmann::json::parse(to_json(profile))["rows"][0]["metrics"])
+    const auto report = nlohmann::json::parse(to_json(profile));
+    for (const auto& metric : report["rows"][0]["metrics"])
         metrics[metric["name"].get<std::string>()] = metric["value"];
     return metrics;
 }
@@ -28,7 +29,7 @@ TEST_CASE("the counters of a profiler are as computed by hand") {
     const std::string text = to_text(ProfilerReport{
         make_report({series("a", {{0, {RayGroup{traces::RayType::camera, 0, {c}, 100}}}})}, "", GroupBy::none)});
     for (const char* line :
-         {"room, a, N 64, gtx-980-ti ", "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum 16000",
+         {"room, a, N 64, gtx-980-ti\n", "l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum 16000",
           "l1tex__t_sector_pipe_lsu_mem_global_op_ld_hit_rate.pct 75.00",  // 4000 of 16000 miss
           "l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio 5.00",
           "l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum 4000",
