@@ -4,6 +4,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
+#include "tools/idle_options.hpp"
 #include "tools/interruption.hpp"
 #include "tools/options.hpp"
 #include "tracer/capture.hpp"
@@ -19,10 +20,9 @@ struct Options {
     std::uint64_t spp = 64;
 };
 
-void run(const Options& o) {
+void run(const Options& o, const CLI::App& command) {
     const tracer::CaptureSettings settings = o.sampling.capture(o.scene, o.sequence, o.decorrelation, o.spp);
-    const std::string adjusted = settings_warning(settings);
-    if (!adjusted.empty()) warn(adjusted);
+    warn_of_settings(command, {&settings, 1});
     check_outputs({o.output});
     advise_if_interrupted("a capture cannot go on where it ended: run the same command again");
     const auto limit = o.threads.apply();
@@ -57,7 +57,7 @@ void add_capture(CLI::App& app) {
         "  raycache capture sponza.glb --strategy cranley-patterson --sequence halton --spp 1024 --trace-samples 4 -o "
         "cp.rct\n"
         "  raycache capture courtyard --strategy cranley-patterson --execution wavefront --order meister -o wave.rct");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

@@ -6,6 +6,7 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
+#include "tools/idle_options.hpp"
 #include "tools/interruption.hpp"
 #include "tools/options.hpp"
 #include "tools/report_options.hpp"
@@ -46,12 +47,10 @@ std::vector<tracer::CaptureSettings> settings_of(const Options& o) {
     return all;
 }
 
-void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus, Progress& progress) {
+void compare_fused(const Options& o, const CLI::App& command, const std::vector<cachesim::Gpu>& gpus,
+                   Progress& progress) {
     const std::vector<tracer::CaptureSettings> settings = settings_of(o);
-    std::set<std::string> warnings;
-    for (const auto& s : settings) warnings.insert(settings_warning(s));
-    for (const std::string& w : warnings)
-        if (!w.empty()) warn(w);
+    warn_of_settings(command, settings);
     advise_if_interrupted(
         "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare those");
     double seconds = 0;
@@ -65,13 +64,15 @@ void compare_fused(const Options& o, const std::vector<cachesim::Gpu>& gpus, Pro
     o.report.replay_and_publish(sources_of(captures), {}, gpus, progress);
 }
 
-void run(const Options& o) {
+void run(const Options& o, const CLI::App& command) {
     if (o.traces.empty() == o.scene.source.empty())
         throw UsageError("nothing to compare; expected either trace files or --scene, not both");
+    if (!o.traces.empty())
+        for (const std::string& line : idle_on_traces(command)) warn(line);
     const auto gpus = o.report.load_gpus(o.traces);
     const auto limit = o.threads.apply();
     Progress progress("compare");
-    if (o.traces.empty()) return compare_fused(o, gpus, progress);
+    if (o.traces.empty()) return compare_fused(o, command, gpus, progress);
     const TraceFiles files(o.traces);
     o.report.replay_and_publish(files.sources, o.traces, gpus, progress);
 }
@@ -122,7 +123,7 @@ void add_compare(CLI::App& app) {
         "  raycache compare --scene sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv\n"
         "  raycache compare --scene courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
         "cranley-patterson+meister,micro-jitter --gpu h100");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

@@ -1,14 +1,13 @@
 // raycache explain: why one trace is kinder to a GPU's caches than another.
 #include <fmt/format.h>
 
-#include <set>
-
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
 #include "tools/explain_job.hpp"
 #include "tools/gpu_options.hpp"
 #include "tools/heat_map.hpp"
+#include "tools/idle_options.hpp"
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/options.hpp"
@@ -65,15 +64,11 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
     deliveries.finish();
 }
 
-void explain_scene(const Options& o, const cachesim::Gpu& gpu, Progress& progress) {
+void explain_scene(const Options& o, const CLI::App& command, const cachesim::Gpu& gpu, Progress& progress) {
     std::vector<tracer::CaptureSettings> settings;
-    std::set<std::string> warnings;
-    for (const std::string& strategy : o.strategies) {
+    for (const std::string& strategy : o.strategies)
         settings.push_back(o.sampling.capture(o.scene, o.sequence, strategy, o.spp));
-        warnings.insert(settings_warning(settings.back()));
-    }
-    for (const std::string& w : warnings)
-        if (!w.empty()) warn(w);
+    warn_of_settings(command, settings);
     double seconds = 0;
     for (const auto& s : settings) seconds += trace_cost(s) + explain_cost(s, gpu.timing && !o.counts_only);
     progress.expect("explain", Work::replay, seconds);
@@ -83,13 +78,15 @@ void explain_scene(const Options& o, const cachesim::Gpu& gpu, Progress& progres
     explain_and_print(o, gpu, sources_of(captures), o.strategies, progress);
 }
 
-void run(const Options& o) {
+void run(const Options& o, const CLI::App& command) {
     if (o.traces.empty() == o.scene.source.empty())
         throw UsageError("nothing to explain; expected either two trace files or --scene, not both");
     if (o.scene.source.empty() && o.traces.size() != 2)
         throw UsageError(fmt::format("{} trace files; expected two: BASE and OTHER", o.traces.size()));
-    if (o.strategies.size() != 2)
+    if (o.traces.empty() && o.strategies.size() != 2)
         throw UsageError(fmt::format("--strategy with {} names; expected two: BASE,OTHER", o.strategies.size()));
+    if (!o.traces.empty())
+        for (const std::string& line : idle_on_traces(command)) warn(line);
     if (!o.heat_map.empty()) check_heat_map_name(o.heat_map);
     const FileNames outputs = heat_map_files(o.heat_map);
     const auto gpus = o.gpu.load(outputs);
@@ -99,7 +96,7 @@ void run(const Options& o) {
     check_outputs(outputs);
     const auto limit = o.threads.apply();
     Progress progress("explain");
-    if (o.traces.empty()) return explain_scene(o, gpu, progress);
+    if (o.traces.empty()) return explain_scene(o, command, gpu, progress);
     const TraceFiles files(o.traces);
     explain_and_print(o, gpu, files.sources, o.traces, progress);
 }
@@ -141,7 +138,7 @@ void add_explain(CLI::App& app) {
         "  raycache explain cp.rct mj.rct --gpu gtx-980-ti\n"
         "  raycache explain cp.rct mj.rct --gpu gtx-980-ti --by bounce --heatmap why.exr\n"
         "  raycache explain --scene courtyard --strategy cranley-patterson,coherent --spp 64 --gpu h100");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

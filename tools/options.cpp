@@ -49,8 +49,10 @@ tracer::SceneRequest::Sky parse_sky(const std::string& text) {
 
 }  // namespace
 
-std::string settings_warning(const tracer::CaptureSettings& settings) {
-    return tracer::SamplingStrategy(settings.strategy, tracer::path_dimensions(settings.paths.bounces)).warning();
+std::vector<std::string> settings_warnings(const tracer::CaptureSettings& settings) {
+    tracer::StrategySettings strategy = settings.strategy;
+    strategy.parameters.width = settings.width;
+    return tracer::SamplingStrategy(strategy, tracer::path_dimensions(settings.paths.bounces)).warnings();
 }
 
 Resolution parse_resolution(const std::string& text) {
@@ -140,8 +142,18 @@ void SamplingOptions::add_strategy(CLI::App& app) {
         ->capture_default_str();
     app.add_option(
         "--mu", mu,
-        "mu itself, 0 to 1, of micro-jitter and scrambling-distance; overrides --k and --s. With micro-jitter "
-        "also 'cycles': Blender's one-sided 4/sqrt(N)");
+        "mu itself, 0 to 1, of micro-jitter and scrambling-distance; instead of --k and --s, or of --cycles-...");
+    app.add_option(
+           "--cycles-multiplier", cycles_multiplier,
+           "Blender's Scrambling Distance Multiplier, of scrambling-distance: d = multiplier * 4 / sqrt(samples),"
+           " off from 1 on; Blender reads it with the pattern Tabulated Sobol only, not with its default")
+        ->capture_default_str();
+    app.add_option("--cycles-min-samples", cycles_min_samples,
+                   "Blender's Min Samples: samples = min(N, this); 0: max(4, ceil(16 / threshold^0.3)), 64 by default")
+        ->capture_default_str();
+    app.add_option("--cycles-noise-threshold", cycles_noise_threshold,
+                   "Blender's Noise Threshold, 0 to 1, 0: max(0.001, 1/N); off: no adaptive sampling, samples = N")
+        ->capture_default_str();
     app.add_option("--interleave", interleave,
                    "M of the M x M pixel classes of interleaved, net-micro-jitter-fast and the thread map classes")
         ->capture_default_str();
@@ -195,12 +207,27 @@ tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, 
     if (!p.k_from_discrepancy) p.k = parse_number<double>(k, "--k", "a number such as 2.5, or 'discrepancy'");
     p.full_s = s == "full";
     if (!p.full_s) p.s = parse_number<unsigned>(s, "--s", "a whole number such as 2, or 'full'");
-    if (mu == "cycles") {
-        p.cycles_mu = true;
-    } else if (!mu.empty()) {
-        p.mu = parse_number<double>(mu, "--mu", "a number from 0 to 1, or 'cycles'");
-    }
+    if (mu == "cycles")
+        throw UsageError(
+            "--mu 'cycles'; expected a number from 0 to 1: Blender's automatic distance is --strategy "
+            "scrambling-distance, with --cycles-multiplier, --cycles-min-samples and --cycles-noise-threshold");
+    if (!mu.empty()) p.mu = parse_number<double>(mu, "--mu", "a number from 0 to 1");
+    p.cycles.multiplier = cycles_multiplier;
+    p.cycles.min_samples = cycles_min_samples;
+    p.cycles.noise_threshold.reset();
+    if (cycles_noise_threshold != "off")
+        p.cycles.noise_threshold =
+            parse_number<double>(cycles_noise_threshold, "--cycles-noise-threshold", "a number from 0 to 1, or 'off'");
     return settings;
+}
+
+/// Options of scrambling-distance that differ from the defaults.
+std::string SamplingOptions::cycles_command() const {
+    std::string text;
+    if (cycles_multiplier != 1) text += fmt::format(" --cycles-multiplier {}", cycles_multiplier);
+    if (cycles_min_samples != 0) text += fmt::format(" --cycles-min-samples {}", cycles_min_samples);
+    if (cycles_noise_threshold != "0.01") text += " --cycles-noise-threshold " + cycles_noise_threshold;
+    return text;
 }
 
 /// Options of paths() that differ from the defaults.
@@ -236,7 +263,7 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
         "--thread-map {} --k {} --s {}{}{} --seed {}{}",
         scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces, path_command(),
-        tracer::to_string(settings.thread_map), k, s, mu.empty() ? "" : " --mu " + mu,
+        tracer::to_string(settings.thread_map), k, s, (mu.empty() ? "" : " --mu " + mu) + cycles_command(),
         interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;

@@ -38,12 +38,15 @@ struct SamplingOptions {
     std::optional<std::uint32_t> bounces_diffuse, bounces_transmission;
     std::string lights = "auto";
     bool russian_roulette = false;
+    double cycles_multiplier = 1;
+    std::uint64_t cycles_min_samples = 0;
+    std::string cycles_noise_threshold = "0.01";
     unsigned interleave = 8;
     std::uint64_t seed = 1, trace_samples = 8;
     std::string execution = "megakernel", order = "none";
 
     void add_picture(CLI::App&);    ///< --resolution, and what paths() is made of
-    void add_strategy(CLI::App&);   ///< --k --s --mu --interleave --seed
+    void add_strategy(CLI::App&);   ///< --k --s --mu --cycles-… --interleave --seed
     void add_launches(CLI::App&);   ///< --trace-samples --thread-map
     void add_execution(CLI::App&);  ///< --execution --order
 
@@ -58,6 +61,7 @@ struct SamplingOptions {
 
 private:
     std::string path_command() const;
+    std::string cycles_command() const;
 };
 
 /// --threads, and the limit it sets for the life of the object this returns.
@@ -68,8 +72,8 @@ struct ThreadOptions {
     std::shared_ptr<void> apply() const;
 };
 
-/// What the strategy has to say about its settings, such as "mu 1.58 clamped to 1 …"; empty if nothing.
-std::string settings_warning(const tracer::CaptureSettings&);
+/// What the strategy has to say about its settings, such as "mu 1.58 clamped to 1 …" (SamplingStrategy::warnings()).
+std::vector<std::string> settings_warnings(const tracer::CaptureSettings&);
 
 struct Resolution {
     std::uint32_t width, height;

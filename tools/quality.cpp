@@ -19,7 +19,7 @@ struct Options {
     std::string output, crop;
 };
 
-void run(const Options& o) {
+void run(const Options& o, const CLI::App& command) {
     QualityRequest request;
     for (const std::string& sequence : o.sequences)
         for (const std::uint64_t spp : o.spp)
@@ -43,7 +43,7 @@ void run(const Options& o) {
     }
     Deliveries deliveries;
     Progress progress("quality");
-    const QualityReport report = o.common.measure(std::move(request), pictures, deliveries, progress);
+    const QualityReport report = o.common.measure(command, std::move(request), pictures, deliveries, progress);
     deliveries.attempt([&] {
         print(o.common.json  ? o.common.json.document(to_json(report), report.subject)
               : o.common.csv ? to_csv(report)
@@ -77,7 +77,7 @@ void add_quality(CLI::App& app) {
         "  raycache quality cornell_box.glb --resolution 256x256 --spp 16,64,256 --reference-spp 4096 --csv\n"
         "  raycache quality sponza.glb --spp 64 --gpu gtx-980-ti --output pictures\n"
         "  raycache quality cornell_box.glb --strategy cranley-patterson,micro-jitter --repeats 8 --pairs");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

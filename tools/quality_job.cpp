@@ -23,8 +23,8 @@ namespace {
 
 std::uint32_t dimensions_of(const tracer::CaptureSettings& s) { return tracer::path_dimensions(s.paths.bounces); }
 
-tracer::RenderSettings render_settings(const tracer::CaptureSettings& s) {
-    return {s.width, s.height, s.paths, s.strategy};
+tracer::RenderSettings render_settings(const tracer::CaptureSettings& s, std::optional<float> clamp) {
+    return {s.width, s.height, s.paths, s.strategy, clamp};
 }
 
 std::uint64_t paths_of(const tracer::CaptureSettings& s) {
@@ -52,14 +52,14 @@ tracer::CaptureSettings with_spp(tracer::CaptureSettings settings, std::uint64_t
 
 class Renderer {
 public:
-    Renderer(const tracer::PreparedScene& scene, const tracer::Reference& reference, std::uint64_t repeats,
+    Renderer(const tracer::PreparedScene& scene, const tracer::Reference& reference, const QualityRequest& request,
              const Progress::Stage& stage)
-        : scene_(scene), reference_(reference), repeats_(repeats), stage_(stage) {}
+        : scene_(scene), reference_(reference), repeats_(request.repeats), clamp_(request.clamp), stage_(stage) {}
 
     tracer::ErrorMeasures measure(const tracer::CaptureSettings& settings, tracer::Image* first = nullptr) {
         std::vector<tracer::Image> seeds;
         for (std::uint64_t r = 0; r < repeats_; ++r) {
-            tracer::RenderSettings one = render_settings(settings);
+            tracer::RenderSettings one = render_settings(settings, clamp_);
             one.strategy.parameters.seed += r;
             seeds.push_back(tracer::render(scene_, one, [&](std::uint64_t done) { stage_.add(done, done); }));
         }
@@ -72,21 +72,23 @@ private:
     const tracer::PreparedScene& scene_;
     const tracer::Reference& reference_;
     std::uint64_t repeats_;
+    std::optional<float> clamp_;
     const Progress::Stage& stage_;
 };
 
 void render_cases(const tracer::PreparedScene& scene, const tracer::Reference& reference, const QualityRequest& request,
                   std::vector<QualityRow>& rows, Progress& progress) {
     const auto stage = progress.begin("strategies", paths_of(request), "paths");
-    Renderer renderer(scene, reference, request.repeats, stage);
+    Renderer renderer(scene, reference, request, stage);
     for (QualityRow& row : rows) {
         row.errors = renderer.measure(row.settings, &row.picture);
         if (!request.pairs) continue;
-        const double all = row.errors.structured_mse();
+        const bool resolved = row.errors.rmse.resolved() && row.errors.r8.resolved();
+        const double all = resolved ? row.errors.structured_mse : 0;
         for (std::uint32_t pair = 0; 2 * pair < dimensions_of(row.settings); ++pair) {
             tracer::CaptureSettings without = row.settings;
             without.strategy.independent_pair = pair;
-            const double rest = renderer.measure(without).structured_mse();
+            const double rest = renderer.measure(without).structured_mse;
             row.pairs.push_back({pair, all > 0 ? 1 - rest / all : std::numeric_limits<double>::quiet_NaN()});
         }
     }
@@ -138,7 +140,7 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
         if (cases.back().strategy.parameters.spp != row.spp()) paths += request.repeats * paths_of(cases.back());
     }
     const auto stage = progress.begin("equal time", paths, "paths");
-    Renderer renderer(scene, reference, request.repeats, stage);
+    Renderer renderer(scene, reference, request, stage);
     for (std::size_t r = 0; r < rows.size(); ++r) {
         QualityRow::EqualTime& same = rows[r].equal_time.emplace(QualityRow::EqualTime{});
         same.spp = cases[r].strategy.parameters.spp;
@@ -202,6 +204,8 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
     }
     find_baselines(request.baseline, rows);
     render_cases(scene, reference, request, rows, progress);
+    for (QualityRow& row : rows)
+        if (row.baseline) row.ratio = tracer::rmse_ratio(row.errors, rows[*row.baseline].errors);
     if (request.gpu) {
         predict_times(scene, *request.gpu, rows, progress);
         if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())

@@ -26,6 +26,7 @@ struct QualityRequest {
     bool pairs = false;         ///< also find the worst pair of dimensions: one more picture per pair
     bool equal_time = false;    ///< also render at the N that takes as long as the baseline; needs a GPU
     std::optional<cachesim::Gpu> gpu;
+    std::optional<float> clamp;  ///< of each sample's radiance, as RenderSettings::clamp
 };
 
 /// What remains of the structured error (ErrorMeasures::structured_mse) when dimensions 2 pair and 2 pair + 1 are left
@@ -40,9 +41,10 @@ struct QualityRow {
     tracer::CaptureSettings settings;
     std::string parameters;
     tracer::ErrorMeasures errors;
-    tracer::Image picture;                ///< of the first seed
-    std::optional<std::size_t> baseline;  ///< row of the same N, and of the same sequence where there is one
-    std::vector<PairEffect> pairs;        ///< by pair; empty unless asked for
+    tracer::Image picture;                   ///< of the first seed
+    std::optional<std::size_t> baseline;     ///< row of the same N, and of the same sequence where there is one
+    std::optional<tracer::RmseRatio> ratio;  ///< to the baseline; absent without one
+    std::vector<PairEffect> pairs;           ///< by pair; empty unless asked for
 
     struct Timing {
         double seconds = 0;                          ///< predicted for all N samples; NaN: no_time_note()

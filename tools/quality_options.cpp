@@ -4,13 +4,23 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
+#include "tools/idle_options.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
+namespace {
+
+std::vector<std::string> independent_strategies() {
+    std::vector<std::string> names;
+    for (const auto& entry : tracer::decorrelations())
+        if (entry.independent_pixels) names.push_back(entry.name);
+    return names;
+}
+
+}  // namespace
 
 void QualityOptions::add(CLI::App& app, bool require_gpu) {
     scene.add(app, true);
@@ -23,6 +33,9 @@ void QualityOptions::add(CLI::App& app, bool require_gpu) {
     app.add_option("--reference", reference_file,
                    "FILE.exr that keeps the reference; default: a file in the user's cache folder, found by scene and "
                    "settings");
+    app.add_option("--clamp", clamp,
+                   "radiance that no channel of a sample exceeds, in pictures and reference alike: fireflies then do "
+                   "not decide; default: none");
     app.add_option("--repeats", repeats, "pictures of each strategy, with seeds one after the other")
         ->capture_default_str();
     app.add_option("--gpu", gpu.names, "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
@@ -45,25 +58,28 @@ std::string QualityOptions::baseline_of(const std::vector<std::string>& strategi
     return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
 }
 
-QualityReport QualityOptions::measure(QualityRequest request, const FileNames& outputs, Deliveries& deliveries,
+QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest request, const FileNames& outputs, Deliveries& deliveries,
                                       Progress& progress) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
     const auto gpus = gpu.load(outputs);
     gpu.check_timed(gpus);
     if (!gpus.empty()) request.gpu = gpus.front();
     request.repeats = repeats;
+    request.clamp = clamp;
     check(request);
+    tracer::check_clamp(clamp);
     if (reference_spp < 2) throw UsageError(fmt::format("--reference-spp {}; expected 2 or more", reference_spp));
     if (!reference_file.empty() && !reference_file.ends_with(".exr"))
         throw UsageError(fmt::format("--reference {}; expected a name that ends in .exr", reference_file));
+    if (!tracer::find_decorrelation(reference_strategy).independent_pixels)
+        throw UsageError(
+            fmt::format("--reference-strategy {}; expected one without bias and without error that pixels share: {}",
+                        reference_strategy, fmt::join(independent_strategies(), ", ")));
     tracer::StrategySettings reference_settings;
     reference_settings.decorrelation = reference_strategy;
     const tracer::SamplingStrategy valid(reference_settings,
                                          tracer::path_dimensions(request.cases.front().paths.bounces));
-    std::set<std::string> warnings;
-    for (const auto& c : request.cases) warnings.insert(settings_warning(c));
-    for (const std::string& w : warnings)
-        if (!w.empty()) warn(w);
+    warn_of_settings(command, request.cases, {request.gpu.has_value(), "without --gpu no time is predicted"});
 
     std::error_code error;
     check_outputs(outputs);
@@ -75,7 +91,7 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     const auto prepared = scene.prepare(outputs, progress);
     QualityReport result;
     tracer::Reference reference =
-        find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol"},
+        find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol", clamp},
                        reference_file, result.reference_path, deliveries, progress);
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
@@ -83,6 +99,7 @@ QualityReport QualityOptions::measure(QualityRequest request, const FileNames& o
     result.subject.gpus = gpus;
     result.reference_spp = reference_spp;
     result.repeats = repeats;
+    result.clamp = clamp;
     result.width = first.width;
     result.height = first.height;
     result.rows = measure_quality(*prepared, reference, request, progress);

@@ -38,7 +38,7 @@ std::string file_name(std::string label) {
 /// The square of whole blocks in which the squared block means of all rows add up to most.
 Crop worst_crop(const QualityReport& report) {
     const std::uint32_t side = std::min({usual_crop, report.width, report.height});
-    const auto& first = report.rows.front().errors.blocks;
+    const auto& first = report.rows.front().errors.sums.blocks;
     const std::uint32_t blocks = side / tracer::error_block;
     Crop best{0, 0, side};
     double most = -1;
@@ -46,11 +46,11 @@ Crop worst_crop(const QualityReport& report) {
         for (std::uint32_t left = 0; left + blocks <= first.columns; ++left) {
             double sum = 0;
             for (const QualityRow& row : report.rows)
-                for (std::uint32_t y = top; y < top + blocks; ++y)
+                for (std::uint32_t y = top; y < top + blocks && row.errors.block_rmse.value > 0; ++y)
                     for (std::uint32_t x = left; x < left + blocks; ++x) {
-                        const double mean = row.errors.blocks.mean[std::size_t{y} * first.columns + x];
+                        const double mean = row.errors.sums.blocks.mean[std::size_t{y} * first.columns + x];
                         // A few bright pixels must not choose the place: sizes, not squares.
-                        sum += std::fabs(mean) / row.errors.block_rmse;
+                        sum += std::fabs(mean) / row.errors.block_rmse.value;
                     }
             if (!(sum > most)) continue;
             most = sum;
@@ -84,6 +84,16 @@ void draw_error(Canvas& canvas, unsigned x, unsigned y, const Image& image, cons
     draw_part(canvas, x, y, crop.side, crop.side, [&](std::uint32_t px, std::uint32_t py) {
         return scale.of(error[std::size_t{crop.y + py} * image.width + crop.x + px]);
     });
+}
+
+std::string number_text(double value, int digits) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
+/// Without its interval: a caption is short.
+std::string short_text(tracer::Measured m, int digits, bool general = false) {
+    m.half_width = std::nan("");
+    return tracer::measured_text(m, digits, general);
 }
 
 std::string speed_text(const QualityRow& row) {
@@ -131,12 +141,13 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
         const QualityRow& row = report.rows[r];
         const unsigned y = top + (r + 1) * row_height;
         canvas.text(column(0), y,
-                    fmt::format("{}, N {}, RMSE {:.3g}, R8 {:.1f}, z {:.1f}{}", label(row, report.rows), row.spp(),
-                                row.errors.rmse.value, row.errors.r8.value, row.errors.z_pixels, speed_text(row)),
+                    fmt::format("{}, N {}, RMSE {}, R8 {}, z {}{}", label(row, report.rows), row.spp(),
+                                short_text(row.errors.rmse, 3, true), short_text(row.errors.r8, 1),
+                                number_text(row.errors.z_pixels, 1), speed_text(row)),
                     text_scale);
         draw_crop(canvas, column(0), y + line, row.picture, crop, exposure);
         draw_error(canvas, column(1), y + line, row.picture, reference, crop, pixels);
-        const auto& means = row.errors.blocks;
+        const auto& means = row.errors.sums.blocks;
         if (means.columns > 0 && means.rows > 0)
             draw_part(canvas, column(2), y + line, means.columns, means.rows, [&](std::uint32_t bx, std::uint32_t by) {
                 return blocks.of(means.mean[std::size_t{by} * means.columns + bx]);
@@ -144,8 +155,8 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
         if (!equal_time) continue;
         const QualityRow::EqualTime& same = *row.equal_time;
         canvas.text(column(3), y,
-                    fmt::format("equal time: N {}, RMSE {:.3g}, R8 {:.1f}", same.spp, same.errors.rmse.value,
-                                same.errors.r8.value),
+                    fmt::format("equal time: N {}, RMSE {}, R8 {}", same.spp, short_text(same.errors.rmse, 3, true),
+                                short_text(same.errors.r8, 1)),
                     text_scale);
         draw_crop(canvas, column(3), y + line, same.picture, crop, exposure);
         draw_error(canvas, column(4), y + line, same.picture, reference, crop, pixels);
@@ -175,7 +186,7 @@ void write_row(const std::string& stem, const QualityRow& row, const Image& refe
             canvas.fill(x, y, 1, 1, scale.of(luminance[std::size_t{y} * error.width + x]));
     ScaleBar::draw(canvas, 0, error.height + 4, error.width, scale, "luminance minus reference");
     deliveries.attempt([&] { tracer::write_screen_image(stem + "_error.png", canvas.image()); });
-    const auto& blocks = row.errors.blocks;
+    const auto& blocks = row.errors.sums.blocks;
     if (blocks.columns > 0 && blocks.rows > 0)
         deliveries.attempt([&] {
             tracer::write_channels(stem + "_blocks.exr", blocks.columns, blocks.rows, {{"Y", blocks.mean}});
@@ -231,7 +242,7 @@ void write_quality_pictures(const std::string& folder, const QualityReport& repo
     for (const QualityRow& row : report.rows) {
         const auto own = luminance_error(row.picture, reference);
         errors.insert(errors.end(), own.begin(), own.end());
-        means.insert(means.end(), row.errors.blocks.mean.begin(), row.errors.blocks.mean.end());
+        means.insert(means.end(), row.errors.sums.blocks.mean.begin(), row.errors.sums.blocks.mean.end());
     }
     const Scale pixels = symmetric_scale(errors), blocks = symmetric_scale(means);
     const std::filesystem::path path(folder);

@@ -6,6 +6,7 @@
 
 #include "tools/json_output.hpp"
 #include "tools/quality_job.hpp"
+#include "tracer/quality/sweep_rule.hpp"
 
 namespace raycache::tools {
 
@@ -13,6 +14,7 @@ struct QualityReport {
     std::string scene, baseline, gpu;  ///< gpu: empty where no time was predicted
     std::string reference_path;        ///< empty where it is not kept
     std::uint64_t reference_spp = 0, repeats = 1;
+    std::optional<float> clamp;
     std::uint32_t width = 0, height = 0;
     tracer::Image reference;
     std::vector<QualityRow> rows;
@@ -22,15 +24,15 @@ struct QualityReport {
 
 /// Which mu a sweep advises, and what it accepted.
 struct Recommendation {
-    std::string text;          ///< one line
-    std::optional<double> mu;  ///< none where no mu was acceptable
-    double max_r8 = 0, max_rmse = 0;
+    std::string text;  ///< one line
+    tracer::SweepAdvice advice;
+    tracer::SweepLimits limits;
 };
 
 /// What to call a row among all: the strategy, with sequence, N and mu where rows differ in them.
 std::string label(const QualityRow&, const std::vector<QualityRow>& all);
 
-/// Adds a note for each row whose error the reference is too noisy to resolve.
+/// Adds a note for each row whose error the reference hides or a few pixels decide, and for Blender's defaults.
 void add_notes(QualityReport&);
 
 std::string to_text(const QualityReport&);

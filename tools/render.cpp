@@ -5,6 +5,7 @@
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
 #include "tools/exposure.hpp"
+#include "tools/idle_options.hpp"
 #include "tools/options.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
@@ -19,17 +20,20 @@ struct Options {
     std::string sequence = "sobol", decorrelation = "cranley-patterson", output;
     std::uint64_t spp = 64;
     float exposure = 0;
+    std::optional<float> clamp;
 };
 
-void run(const Options& o, bool given_exposure) {
+void run(const Options& o, const CLI::App& command) {
     tracer::check_image_name(o.output);
-    tracer::RenderSettings settings;
     const Resolution size = parse_resolution(o.sampling.resolution);
-    settings.width = size.width;
-    settings.height = size.height;
-    settings.paths = o.sampling.paths();
-    settings.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
-    const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
+    tracer::CaptureSettings one;
+    one.width = size.width;
+    one.height = size.height;
+    one.paths = o.sampling.paths();
+    one.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
+    warn_of_settings(command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
+    const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o.clamp};
+    tracer::check_clamp(o.clamp);
 
     check_outputs({o.output});
     const auto limit = o.threads.apply();
@@ -39,7 +43,7 @@ void run(const Options& o, bool given_exposure) {
     const auto scene = o.scene.prepare({o.output}, progress);
     const auto stage = progress.begin("render", paths, "paths");
     const tracer::Image image = tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
-    tracer::write_image(o.output, image, given_exposure ? o.exposure : automatic_exposure(image));
+    tracer::write_image(o.output, image, command.count("--exposure") != 0 ? o.exposure : automatic_exposure(image));
 }
 
 }  // namespace
@@ -56,14 +60,14 @@ void add_render(CLI::App& app) {
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
-    const CLI::Option* exposure = command->add_option(
-        "--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
+    command->add_option("--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
+    command->add_option("--clamp", o->clamp, "radiance that no channel of a sample exceeds; default: none");
     o->threads.add(*command);
     command->footer(
         "Examples:\n"
         "  raycache render courtyard --spp 16 -o courtyard.png\n"
         "  raycache render sponza.glb --camera gallery --resolution 1280x720 --spp 256 -o sponza.exr");
-    command->callback([o, exposure] { run(*o, exposure->count() != 0); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

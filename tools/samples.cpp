@@ -5,6 +5,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/idle_options.hpp"
 #include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/outputs.hpp"
@@ -63,13 +64,15 @@ void write_figure2(const Options& o) {
                                              {"cranley-patterson", &rotated}}));
 }
 
-void run(const Options& o) {
+void run(const Options& o, const CLI::App& command) {
     const auto limit = o.threads.apply();
     Progress progress("samples");
     const auto stage = progress.begin("points");
     if (!o.table.empty()) {
         if (!o.csv.empty() || !o.picture.empty() || !o.figure2.empty())
             throw UsageError("--table with --csv, --picture or --figure2; expected --table NAME [--json] alone");
+        const std::vector<std::string> read{"--table", "--json", "--threads"};
+        for (const std::string& line : idle_besides(command, read, "a table has settings of its own")) warn(line);
         const SamplesTable table = make_samples_table(o.table);
         print(o.json ? o.json.document(table.json()) : table.text());
         return;
@@ -82,7 +85,10 @@ void run(const Options& o) {
             fmt::format("--figure2 with --spp {}; expected at most {}", o.spp, tracer::max_star_discrepancy_points));
     check_outputs({o.csv, o.picture, o.figure2});
     const SampleUnion samples = make(o, o.strategy, "");
-    if (!samples.warning.empty()) warn(samples.warning);
+    tracer::CaptureSettings one;
+    one.strategy = samples.strategy;
+    for (const auto& lines : {idle_options(command, {&one, 1}, {false, "only points are shown"}), samples.warnings})
+        for (const std::string& line : lines) warn(line);
     Deliveries deliveries;
     deliveries.attempt([&] { print(o.json ? o.json.document(to_json(samples)) : to_text(samples)); });
     if (!o.csv.empty()) deliveries.attempt([&] { write_text(o.csv, to_csv(samples)); });
@@ -131,7 +137,7 @@ void add_samples(CLI::App& app) {
         "  raycache samples --sequence sobol --spp 1024 --dimensions 2,3 --mu 0.05 --csv points.csv --json\n"
         "  raycache samples --figure2 figure2.png\n"
         "  raycache samples --table bias");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

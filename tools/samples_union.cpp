@@ -89,7 +89,7 @@ SampleUnion make_sample_union(StrategySettings settings, std::uint32_t first, st
     const SamplingStrategy strategy(settings, std::max(first, second) + 1);
     u.strategy = strategy.settings();
     u.parameters = strategy.parameters();
-    u.warning = strategy.warning();
+    u.warnings = strategy.warnings();
 
     const auto n = static_cast<std::uint32_t>(settings.parameters.spp);
     const auto sequence = make_sequence(settings.sequence, settings.parameters.seed);

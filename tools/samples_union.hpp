@@ -15,7 +15,7 @@ struct SampleUnion {
     tracer::StrategySettings strategy;
     std::uint32_t first_dimension = 0, second_dimension = 1, copies = 1;
     std::string parameters;  ///< such as "K=2.5 s=2 mu=0.0781"
-    std::string warning;     ///< empty: none
+    std::vector<std::string> warnings;
 
     std::vector<tracer::FixedPoint2> base;    ///< N points of the sequence
     std::vector<tracer::FixedPoint2> points;  ///< of pixel 0, then of pixel 1, …

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cachesim/report/table.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/quality_options.hpp"
@@ -23,65 +24,90 @@ struct Options {
     double max_r8 = 2, max_rmse = 1.1;
 };
 
-double ratio_of(const QualityRow& row, const std::vector<QualityRow>& rows) {
-    return row.errors.rmse.value / rows[*row.baseline].errors.rmse.value;
-}
-
 std::string speed_text(const QualityRow& row) {
     const auto& up = row.timing->speed_up;
     if (!up) return "not predicted";
-    return fmt::format("predicted {:.3f}{} x", up->mean,
-                       up->half_width ? fmt::format(" ±{:.3f}", *up->half_width) : "");
+    return fmt::format("predicted {} x",
+                       tracer::measured_text({up->mean, up->half_width.value_or(std::nan("")), {}, {}, 0}, 3));
 }
 
-std::string describe(const QualityRow& row, const std::vector<QualityRow>& rows) {
+std::string describe(const QualityRow& row) {
     const double mu = *row.strategy().parameters.mu;
-    return fmt::format("mu {:.4g} (K {:.3g}): speed {}, R8 {:.2f}, RMSE {:.3f} x", mu,
-                       mu * std::sqrt(static_cast<double>(row.spp())), speed_text(row), row.errors.r8.value,
-                       ratio_of(row, rows));
+    const bool number = row.ratio->value.resolved() || row.ratio->value.below || row.ratio->value.above;
+    return fmt::format("mu {:.4g} (K {:.3g}): speed {}, R8 {}, RMSE {}{}", mu,
+                       mu * std::sqrt(static_cast<double>(row.spp())), speed_text(row),
+                       tracer::measured_text(row.errors.r8, 2), tracer::ratio_text(*row.ratio), number ? " x" : "");
 }
 
-/// The least mu that is acceptable together with every larger one: a lucky figure amid bad ones does not count.
-Recommendation recommend(const Options& o, const QualityReport& report) {
-    Recommendation advice{{}, std::nullopt, o.max_r8, o.max_rmse};
-    std::vector<const QualityRow*> swept;
-    for (const QualityRow& row : report.rows)
-        if (row.strategy().parameters.mu) swept.push_back(&row);
-    std::sort(swept.begin(), swept.end(), [](const QualityRow* a, const QualityRow* b) {
-        return *a->strategy().parameters.mu > *b->strategy().parameters.mu;
-    });
-    const QualityRow *best = nullptr, *refused = nullptr;
-    for (const QualityRow* row : swept) {
-        const bool good = row->errors.r8.value <= o.max_r8 && ratio_of(*row, report.rows) <= o.max_rmse;
-        if (!good) {
-            refused = row;
-            break;
-        }
-        best = row;
-    }
+const QualityRow& row_of(double mu, const QualityReport& report) {
+    return *std::find_if(report.rows.begin(), report.rows.end(),
+                         [&](const QualityRow& r) { return r.strategy().parameters.mu == mu; });
+}
+
+/// Whether that row is certainly faster than the baseline, or what would tell.
+std::string gain_text(const Options& o, const QualityRow& row) {
+    const auto& up = row.timing->speed_up;
+    if (!up || (up->half_width && up->mean - *up->half_width > 1)) return {};
+    if (up->half_width && up->mean + *up->half_width < 1) return fmt::format("; slower than {}", baseline);
+    const std::uint64_t traced = std::min(o.common.sampling.trace_samples, o.spp);
+    std::string text = fmt::format("; no certain gain over {}", baseline);
+    constexpr double least = 0.005;  // a gain of half a percent is none to speak of
+    const double wanted = std::max(std::fabs(up->mean - 1), least);
+    const std::uint64_t to = up->half_width ? std::min(o.spp, tracer::raised(traced, *up->half_width, wanted))
+                                            : std::min<std::uint64_t>(o.spp, 8);
+    if (to > traced) text += ", too noisy to say: " + tracer::Raise{"--trace-samples", traced, to}.text();
+    return text;
+}
+
+std::string advice_text(const Options& o, const QualityReport& report, const tracer::SweepAdvice& advice) {
     const std::string bounds =
         fmt::format("R8 at most {} and an RMSE of at most {} x {}'s", o.max_r8, o.max_rmse, baseline);
-    if (!best) {
-        advice.text = fmt::format("no mu of this list has {}; the largest: {}", bounds,
-                                  swept.empty() ? "none" : describe(*swept.front(), report.rows));
-        return advice;
+    std::string text;
+    if (advice.mu) {
+        const QualityRow& best = row_of(*advice.mu, report);
+        text = fmt::format("{} with {}, the least with {}{}", o.swept, describe(best), bounds, gain_text(o, best));
+    } else if (advice.why.verdict == tracer::Verdict::rejected) {
+        text = fmt::format("no mu of this list has {}; the largest: {}", bounds,
+                           describe(row_of(*advice.blocked_by, report)));
     }
-    advice.mu = best->strategy().parameters.mu;
-    advice.text = fmt::format("{} with {}, the least with {}", o.swept, describe(*best, report.rows), bounds);
-    if (refused) advice.text += fmt::format("; below it, {}", describe(*refused, report.rows));
-    const auto& up = best->timing->speed_up;
-    if (up && up->mean - up->half_width.value_or(0) <= 1)
-        advice.text += fmt::format("; no certain gain over {}", baseline);
-    return advice;
+    if (!advice.blocked_by) return text;
+    const QualityRow& next = row_of(*advice.blocked_by, report);
+    if (advice.why.verdict == tracer::Verdict::unclear) {
+        const tracer::Judgement& why = advice.why;
+        text += text.empty() ? "" : "; below it, ";
+        text += fmt::format("{} {}", o.swept, describe(next));
+        const bool noisy = why.raise.has_value();
+        text += fmt::format(", {} ({}){}", noisy ? "too noisy to say" : "not to be judged", why.reason,
+                            noisy ? ": " + why.raise->text() : "");
+    } else if (advice.mu) {
+        text += fmt::format("; below it, {}", describe(next));
+    }
+    return text;
 }
 
-void run(const Options& o) {
+Recommendation recommend(const Options& o, const QualityReport& report) {
+    const tracer::SweepLimits limits{o.max_r8, o.max_rmse};
+    std::vector<tracer::SweepPoint> points;
+    for (const QualityRow& row : report.rows)
+        if (row.strategy().parameters.mu) points.push_back({*row.strategy().parameters.mu, row.errors.r8, *row.ratio});
+    const auto advice = tracer::advise(points, limits, {o.common.repeats, o.common.reference_spp});
+    return {advice_text(o, report, advice), advice, limits};
+}
+
+void run(const Options& o, const CLI::App& command) {
     QualityRequest request;
     const auto add = [&](const std::string& strategy, std::optional<double> mu) {
         auto& settings =
             request.cases.emplace_back(o.common.sampling.capture(o.common.scene, o.sequence, strategy, o.spp));
         settings.strategy.parameters.mu = mu;
     };
+    if (!tracer::find_decorrelation(o.swept).reads_parameter(tracer::Parameter::mu,
+                                                             tracer::DecorrelationSettings{.mu = 1}))
+        throw UsageError(
+            fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o.swept));
+    for (const auto& [option, value] : {std::pair("--max-r8", o.max_r8), std::pair("--max-rmse", o.max_rmse)})
+        if (!std::isfinite(value) || value <= 0)
+            throw UsageError(fmt::format("{} {}; expected a number above 0", option, value));
     if (o.mus.empty()) throw UsageError("no mu to sweep; expected at least one");
     for (const double mu : o.mus) {
         if (!(mu >= 0 && mu <= 1)) throw UsageError(fmt::format("--mu {}; expected numbers from 0 to 1", mu));
@@ -96,12 +122,14 @@ void run(const Options& o) {
             fmt::format("--baseline {}; expected {}, which a sweep is held against", o.common.baseline, baseline));
     Deliveries deliveries;
     Progress progress("sweep");
-    const QualityReport report = o.common.measure(std::move(request), {}, deliveries, progress);
+    const QualityReport report = o.common.measure(command, std::move(request), {}, deliveries, progress);
     const Recommendation advice = recommend(o, report);
     deliveries.attempt([&] {
         print(o.common.json  ? o.common.json.document(to_json(report, &advice), report.subject)
               : o.common.csv ? to_csv(report)
-                             : to_text(report) + "\nrecommendation: " + advice.text + "\n");
+                             : to_text(report) + "\n" +
+                                   cachesim::break_lines("recommendation: " + advice.text + "\n",
+                                                         cachesim::text_width, 2));
     });
     deliveries.finish();
 }
@@ -133,7 +161,7 @@ void add_sweep(CLI::App& app) {
         "  raycache sweep sponza.glb --gpu h100 --spp 256 --resolution 256x256 --mu 0,0.1,0.2,0.5,1 --csv\n"
         "  raycache sweep cornell_box.glb --gpu gtx-980-ti --json > sweep.json && tools/plot_sweep sweep.json -o "
         "sweep.png");
-    command->callback([o] { run(*o); });
+    command->callback([o, command] { run(*o, *command); });
 }
 
 }  // namespace raycache::tools

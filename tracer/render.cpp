@@ -5,10 +5,12 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <cmath>
 #include <memory>
 
 #include "tracer/paths/embree_traversal.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "traces/error.hpp"
 #include "traces/memory_budget.hpp"
 
 namespace raycache::tracer {
@@ -25,7 +27,18 @@ struct Worker {
     PathIntegrator<EmbreeTraversal> integrator;
 };
 
+Vec3 clamped(Vec3 radiance, std::optional<float> limit) {
+    if (!limit) return radiance;
+    const float most = max_component(radiance);
+    return most > *limit ? radiance * (*limit / most) : radiance;
+}
+
 }  // namespace
+
+void check_clamp(std::optional<float> clamp) {
+    if (clamp && !(std::isfinite(*clamp) && *clamp > 0))
+        throw UsageError(fmt::format("--clamp {}; expected a radiance above 0, such as 10", *clamp));
+}
 
 Image render(const PreparedScene& scene, const RenderSettings& settings,
              const std::function<void(std::uint64_t paths)>& progress) {
@@ -61,7 +74,7 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
                 workers.local()->integrator.trace(jobs.mask, lanes, radiance);
                 for (unsigned l = 0; l < traces::warp_lanes; ++l) {
                     if (((jobs.mask >> l) & 1U) == 0) continue;
-                    image.pixels[lanes[l].pixel] += radiance[l] / static_cast<float>(spp);
+                    image.pixels[lanes[l].pixel] += clamped(radiance[l], settings.clamp) / static_cast<float>(spp);
                     ++paths;
                 }
             }

@@ -31,6 +31,41 @@ class QualityTest(ProgramTest):
     def quality(self, *arguments, **keywords):
         return self.succeeds("quality", *small(*arguments), **keywords)
 
+    def firefly_scene(self):
+        """A floor, seen from above, with a lamp of one millimetre beside the camera: bounce rays meet it once in
+        millions, and only these (--lights bsdf)."""
+        import base64
+        import json
+        import struct
+        floor = [(-2, 0, -2), (2, 0, -2), (2, 0, 2), (-2, 0, 2)]
+        side = 0.02
+        lamp = [(-side, 1, -side), (side, 1, -side), (side, 1, side), (-side, 1, side)]
+        points = b"".join(struct.pack("<3f", *v) for v in floor + lamp)
+        indices = struct.pack("<6H", 0, 2, 1, 0, 3, 2)
+        view = lambda at, size: {"buffer": 0, "byteOffset": at, "byteLength": size}  # noqa: E731
+        accessor = lambda v, kind, count, shape, **more: {"bufferView": v, "componentType": kind, "count": count,  # noqa: E731
+                                                          "type": shape, **more}
+        box = lambda vs: {"min": [min(c) for c in zip(*vs)], "max": [max(c) for c in zip(*vs)]}  # noqa: E731
+        mesh = lambda position, material: {"primitives": [{"attributes": {"POSITION": position}, "indices": 2,  # noqa: E731
+                                                           "material": material}]}
+        scene = {
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+            "nodes": [{"mesh": 0}, {"mesh": 1},
+                      {"camera": 0, "translation": [0, 2, 0], "rotation": [-0.70710678, 0, 0, 0.70710678]}],
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.01}}],
+            "meshes": [mesh(0, 0), mesh(1, 1)],
+            "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}},
+                          {"emissiveFactor": [1, 1, 1], "doubleSided": True,
+                           "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 1000}}}],
+            "extensionsUsed": ["KHR_materials_emissive_strength"],
+            "accessors": [accessor(0, 5126, 4, "VEC3", **box(floor)), accessor(1, 5126, 4, "VEC3", **box(lamp)),
+                          accessor(2, 5123, 6, "SCALAR")],
+            "bufferViews": [view(0, 48), view(48, 48), view(96, 12)],
+            "buffers": [{"byteLength": 108, "uri": "data:application/octet-stream;base64," +
+                         base64.b64encode(points + indices).decode()}]}
+        self.path("firefly.gltf").write_text(json.dumps(scene))
+        return "firefly.gltf"
+
     def references(self):
         return sorted((self.path("cache") / "raycache/references").glob("*"))
 
@@ -52,7 +87,11 @@ class Quality(QualityTest):
             self.assertGreater(rows["coherent"]["r8"]["value"], 2 * rows[name]["r8"]["value"])
             self.assertGreater(rows["coherent"]["z_pixels"], rows[name]["z_pixels"])
         self.assertEqual(rows["cranley-patterson"]["rmse_ratio"], 1)
+        self.assertEqual(rows["cranley-patterson"]["rmse_ratio_half_width_95"], 0)
+        self.assertTrue(rows["cranley-patterson"]["unbiased_by_construction"])
+        self.assertFalse(rows["coherent"]["unbiased_by_construction"])
         self.assertLess(rows["cranley-patterson"]["rmse"]["value"], rows["random"]["rmse"]["value"])
+        self.assertGreater(rows["random"]["rmse"]["half_width_95"], 0)
 
     def test_the_reference_is_kept_and_gives_the_same_result_again_for_any_number_of_threads(self):
         first = self.quality("--json", "--threads", "1").stdout
@@ -83,6 +122,57 @@ class Quality(QualityTest):
         self.quality("--strategy", "random", "--fov", "20")
         self.quality("--strategy", "random", "--reference-spp", "32")
         self.assertEqual(len(self.references()), 3)
+
+    def test_an_error_below_the_references_noise_is_bounded_and_never_0(self):
+        noisy = ["--reference-spp", "4", "--reference-strategy", "random", "--spp", "256", "--strategy",
+                 "cranley-patterson,owen"]
+        result = self.quality("--json", *noisy).json
+        for row in result["rows"]:
+            self.assertIsNone(row["rmse"]["value"])
+            self.assertGreater(row["rmse"]["below"], 0)
+            self.assertIsNone(row["r8"]["value"])
+            self.assertIsNone(row["rmse_ratio"])
+            self.assertEqual(row["rmse_ratio_words"], "below the reference's noise")
+        self.assertIn("below the reference's noise", str(result["notes"]))
+        text = self.quality(*noisy).text
+        self.assertRegex(text, r"owen +< 0\.\d+")
+        self.assertIn("raise --reference-spp", text)
+        rows = list(csv.DictReader(io.StringIO(self.quality("--csv", *noisy).text)))
+        self.assertEqual(rows[0]["rmse"], "")
+        self.assertGreater(float(rows[0]["rmse_below"]), 0)
+        for form in (text, str(result)):
+            self.assertNotIn("nan", form)
+            self.assertNotIn("inf", form)
+
+    def test_a_clamp_belongs_to_pictures_and_reference(self):
+        free = self.quality("--json", "--strategy", "random").json
+        clamped = self.quality("--json", "--strategy", "random", "--clamp", "0.05").json
+        self.assertEqual(len(self.references()), 2)
+        self.assertIsNone(free["clamp"])
+        self.assertAlmostEqual(clamped["clamp"], 0.05, places=6)
+        self.assertLess(clamped["reference"]["mean_luminance"], free["reference"]["mean_luminance"])
+        self.assertIn("samples clamped to 0.05", self.quality("--strategy", "random", "--clamp", "0.05").text)
+
+    def test_a_ranking_that_a_few_pixels_decide_is_refused(self):
+        # A lamp of a millimetre in view of a camera with few pixels: whether a sample meets it decides a pixel.
+        firefly = self.firefly_scene()
+        arguments = ["quality", firefly, "--resolution", "32x32", "--spp", "4", "--bounces", "2", "--lights", "bsdf",
+                     "--reference-spp", "64", "--strategy", "cranley-patterson,random,owen,coherent"]
+        rows = self.succeeds(*arguments, "--json").json["rows"]
+        decided = [row for row in rows if row["decided_by_pixels"]]
+        self.assertTrue(decided, rows)
+        for row in decided:
+            self.assertIsNone(row["rmse_ratio"])
+            self.assertRegex(row["rmse_ratio_words"], r"decided by \d pixels?$")
+        text = self.succeeds(*arguments).text
+        self.assertIn("no ranking; use --clamp, or the robust error", " ".join(text.split()))
+        clamped = self.succeeds(*arguments, "--clamp", "1", "--json").json["rows"]
+        self.assertFalse([row for row in clamped if row["decided_by_pixels"]])
+
+    def test_the_output_says_what_a_default_blender_does(self):
+        notes = str(self.quality("--json", "--strategy", "scrambling-distance").json["notes"])
+        self.assertIn("a default Blender has blue noise", notes)
+        self.assertNotIn("Blender", str(self.quality("--json", "--strategy", "scrambling-distance", "--mu", "0.5").json))
 
     def test_a_named_reference_is_written_once_then_used_and_refused_where_it_does_not_fit(self):
         first = self.quality("--csv", "--reference", "mine.exr").stdout
@@ -132,6 +222,8 @@ class Quality(QualityTest):
                                 (["--repeats", "0"], "--repeats"), (["--reference-spp", "1"], "--reference-spp"),
                                 (["--bounces", "65"], "--bounces"), (["--baseline", "no-such"], "no-such"),
                                 (["--crop", "0,0,8"], "--output"), (["--crop", "0,0,99", "--output", "x"], "--crop"),
+                                (["--clamp", "0"], "--clamp"), (["--clamp", "nan"], "--clamp"),
+                                (["--reference-strategy", "coherent"], "cranley-patterson, owen, random"),
                                 (["--json", "--csv"], "--csv"), (["--gpu", "no-such"], "no-such"),
                                 (["--seed", str(0x7265666572656e63)], "--seed")):
             with self.subTest(arguments):
@@ -156,14 +248,40 @@ class Sweep(QualityTest):
         self.assertLess(one["r8"]["value"], zero["r8"]["value"])
         self.assertIsNone(cp["speed_up"])
         self.assertTrue(result["recommendation"])
-        if result["recommended_mu"] is not None:
-            best = rows["micro-jitter", result["recommended_mu"]]
-            self.assertLessEqual(best["r8"]["value"], result["accepted"]["r8"])
+        self.assertIsNotNone(result["recommended_mu"])  # mu = 1 is Cranley-Patterson, which nothing refuses
+        best = rows["micro-jitter", result["recommended_mu"]]
+        if best["mu"] < 1:
+            self.assertLessEqual(best["r8"]["value"] + best["r8"]["half_width_95"], result["accepted"]["r8"])
 
     def test_the_recommendation_is_the_least_mu_with_an_acceptable_picture(self):
         self.assertIn("recommendation: micro-jitter with mu 0 ",
                       self.sweep("--max-r8", "1e9", "--max-rmse", "1e9").text)
-        self.assertIn("recommendation: no mu of this list", self.sweep("--max-rmse", "0").text)
+        self.assertIn("recommendation: no mu of this list has",
+                      self.succeeds("sweep", *small(*GPU, "--mu", "0,0.1", "--max-r8", "1e-9")).text)
+
+    def test_what_noise_hides_is_not_judged_but_answered_with_what_would_tell(self):
+        result = self.sweep("--json", "--repeats", "2", "--max-r8", "4").json
+        text = str(result["recommendation"])
+        next_smaller = result["next_smaller"]
+        if next_smaller["verdict"] == "too noisy to say":
+            self.assertRegex(text, r"too noisy to say \(.*\): raise --[a-z-]+ from \d+ to \d+")
+            self.assertGreater(next_smaller["raise"]["to"], next_smaller["raise"]["from"])
+        else:
+            self.assertEqual(next_smaller["verdict"], "rejected")
+
+    def test_a_baseline_without_error_is_named_and_no_word_is_inf_or_nan(self):
+        for arguments in (["--sequence", "random", "--reference-spp", "8"], ["--sky", "off", "--bounces", "0"],
+                          ["--trace-samples", "1"]):
+            for form in ([], ["--json"], ["--csv"]):
+                settings = {**dict(zip(SMALL, SMALL.values())), "--spp": "4"}
+                words = [w for o, v in settings.items() if o not in arguments for w in (o, v)]
+                scene = SCENE if "--sky" in arguments else NAMED
+                text = self.succeeds("sweep", *scene, *words, "--gpu", "gtx-980-ti", "--mu", "0,0.5,1",
+                                     *([] if "--trace-samples" in arguments else ["--trace-samples", "2"]), *arguments,
+                                     *form).text
+                self.assertNotRegex(text, r"(?i)\b-?(inf|nan)\b", (arguments, form))
+                if "--sky" in arguments and form != ["--csv"]:
+                    self.assertIn("not defined: the baseline's error is 0", " ".join(text.split()))
 
     def test_the_plot_is_drawn_and_bad_input_to_it_refused(self):
         self.path("sweep.json").write_bytes(self.sweep("--json").stdout)
@@ -182,7 +300,7 @@ class Sweep(QualityTest):
     def test_bad_input_is_refused_in_one_line(self):
         for arguments, word in ((["--mu", "2"], "--mu"), (["--mu", "-0.1"], "--mu"), (["--mu", "nan"], "--mu"),
                                 (["--swept", "no-such"], "no-such"), (["--baseline", "random"], "cranley-patterson"),
-                                (["--spp", "0"], "0")):
+                                (["--spp", "0"], "0"), (["--max-r8", "nan"], "--max-r8"), (["--max-rmse", "-1"], "--max-rmse")):
             with self.subTest(arguments):
                 self.refuses(2, "sweep", *small(*GPU, *arguments), mentions=[word])
         self.refuses(2, "sweep", *small(), mentions=["--gpu"])

@@ -40,7 +40,7 @@ class Strategies(ProgramTest):
             self.warns(*RENDER, "--strategy", strategy, "-o", "a.png")
 
     def test_a_trace_says_the_effective_parameters(self):
-        for options, words in [(["--strategy", "scrambling-distance"], "mu=cycles(0.5)"),
+        for options, words in [(["--strategy", "scrambling-distance"], "multiplier=1 distance_samples=64 mu=0.5"),
                                (["--strategy", "scrambling-distance", "--mu", "0.2"], "mu=0.2"),
                                (["--strategy", "interleaved", "--interleave", "5"], "m=5"),
                                (["--strategy", "net-micro-jitter", "--sequence", "sobol-owen-4d"], "k=1 mu=0.5"),

@@ -1,52 +1,18 @@
 // Errors of pictures made by hand.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 
-#include "tests/tracer/test_meshes.hpp"
-#include "tracer/quality/error_measures.hpp"
+#include "tests/tracer/error_pictures.hpp"
 
 namespace raycache::tracer {
-namespace {
 
-using test::Random;
-
-Image picture(std::uint32_t width, std::uint32_t height, const std::function<Vec3(std::uint32_t, std::uint32_t)>& at) {
-    Image image{width, height, {}};
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) image.pixels.push_back(at(x, y));
-    return image;
-}
-
-Image plain(std::uint32_t width, std::uint32_t height, float value) {
-    return picture(width, height, [&](auto, auto) { return Vec3{value, value, value}; });
-}
-
-/// Of a picture of ones, known without error.
-Reference ones(std::uint32_t width, std::uint32_t height) {
-    return {plain(width, height, 1), plain(width, height, 0), "test"};
-}
-
-ErrorMeasures measure(const Image& image, const Reference& reference) {
-    return measure_errors(std::span(&image, 1), reference);
-}
-
-/// Grey noise of the given deviation, uniform.
-Image noisy(std::uint32_t width, std::uint32_t height, Random& random, float mean, float deviation) {
-    const float half = deviation * std::sqrt(3.0F);
-    return picture(width, height, [&](auto, auto) {
-        const float v = mean + random.between(-half, half);
-        return Vec3{v, v, v};
-    });
-}
-
-}  // namespace
+using namespace test;
 
 TEST_CASE("a picture equal to its reference has no error, and no structure to speak of", "[quality]") {
     const ErrorMeasures m = measure(plain(32, 32, 1), ones(32, 32));
     CHECK(m.rmse.value == 0);
     CHECK(std::isnan(m.r8.value));
-    CHECK(m.mean_error == 0);
+    CHECK(m.mean_error.value == 0);
     CHECK(m.reference_rmse == 0);
     CHECK(m.reference_luminance == Approx(1));
 }
@@ -54,13 +20,13 @@ TEST_CASE("a picture equal to its reference has no error, and no structure to sp
 TEST_CASE("an error that all pixels share has R8 64, its own size as RMSE and mean, and the largest z", "[quality]") {
     const ErrorMeasures m = measure(plain(32, 32, 1.5F), ones(32, 32));
     CHECK(m.rmse.value == Approx(0.5));
-    CHECK(m.rmse.error == Approx(0).margin(1e-12));
+    CHECK(m.rmse.half_width == Approx(0).margin(1e-12));
     CHECK(m.relative_rmse.value == Approx(0.5 / std::sqrt(1.0001)));
     CHECK(m.r8.value == Approx(64));
-    CHECK(m.block_rmse == Approx(0.5));
-    CHECK(m.mean_error == Approx(0.5));
+    CHECK(m.block_rmse.value == Approx(0.5));
+    CHECK(m.mean_error.value == Approx(0.5));
     CHECK(m.z_pixels == Approx(8));  // root of a tile's 64 pixels
-    CHECK(m.structured_mse() == Approx(0.25));
+    CHECK(m.structured_mse == Approx(0.25));
     CHECK_FALSE(m.z_seeds);
 }
 
@@ -72,7 +38,7 @@ TEST_CASE("errors that cancel within every block have R8 0", "[quality]") {
     const ErrorMeasures m = measure(image, ones(16, 16));
     CHECK(m.rmse.value == Approx(0.25));
     CHECK(m.r8.value == Approx(0).margin(1e-12));
-    CHECK(m.mean_error == Approx(0).margin(1e-12));
+    CHECK(m.mean_error.value == Approx(0).margin(1e-12));
 }
 
 TEST_CASE("one pixel wrong in one channel: every figure by hand", "[quality]") {
@@ -80,13 +46,13 @@ TEST_CASE("one pixel wrong in one channel: every figure by hand", "[quality]") {
     image.pixels[9].x += 3;  // second block
     const ErrorMeasures m = measure(image, ones(16, 8));
     CHECK(m.rmse.value == Approx(std::sqrt(9.0 / 3 / 128)));
-    CHECK(m.block_rmse == Approx(std::sqrt(9.0 / 3 / (64 * 64) / 2)));
+    CHECK(m.block_rmse.value == Approx(std::sqrt(9.0 / 3 / (64 * 64) / 2)));
     CHECK(m.r8.value == Approx(1));
-    CHECK(m.mean_error == Approx(0.2126 * 3 / 128));
-    REQUIRE(m.blocks.columns == 2);
-    REQUIRE(m.blocks.rows == 1);
-    CHECK(m.blocks.mean[0] == 0);
-    CHECK(m.blocks.mean[1] == Approx(0.2126 * 3 / 64));
+    CHECK(m.mean_error.value == Approx(0.2126 * 3 / 128));
+    REQUIRE(m.sums.blocks.columns == 2);
+    REQUIRE(m.sums.blocks.rows == 1);
+    CHECK(m.sums.blocks.mean[0] == 0);
+    CHECK(m.sums.blocks.mean[1] == Approx(0.2126 * 3 / 64));
     const auto worst = worst_block(m);
     REQUIRE(worst);
     CHECK(worst->x == 8);
@@ -98,12 +64,12 @@ TEST_CASE("white noise has R8 near 1, z near 1 and the RMSE it was made with, wi
     Random random(1);
     const ErrorMeasures m = measure(noisy(512, 512, random, 1, 0.1F), ones(512, 512));
     CHECK(m.rmse.value == Approx(0.1).epsilon(0.01));
-    CHECK(std::fabs(m.rmse.value - 0.1) < 4 * m.rmse.error);
-    CHECK(std::fabs(m.r8.value - 1) < 4 * m.r8.error);
-    CHECK(m.r8.error < 0.05);
+    CHECK(std::fabs(m.rmse.value - 0.1) < 4 * m.rmse.half_width);
+    CHECK(std::fabs(m.r8.value - 1) < 4 * m.r8.half_width);
+    CHECK(m.r8.half_width < 0.1);
     CHECK(m.z_pixels < 1.4);
     CHECK(m.z_pixels > 0.5);
-    CHECK(m.mean_error_deviation == Approx(0.1 / 512).epsilon(0.02));
+    CHECK(m.mean_error.half_width == Approx(2.13 * 0.1 / 512).epsilon(0.5));  // from 16 tiles
 }
 
 TEST_CASE("noise of 8 x 8 patches has R8 64; half patches and half white noise lie half way", "[quality]") {
@@ -126,18 +92,20 @@ TEST_CASE("noise of 8 x 8 patches has R8 64; half patches and half white noise l
 TEST_CASE("the reference's own noise is taken off", "[quality]") {
     Random random(3);
     const Image a = noisy(256, 256, random, 1, 0.2F), b = noisy(256, 256, random, 1, 0.2F);
-    Reference reference = ones(256, 256);
-    for (std::size_t p = 0; p < a.pixels.size(); ++p) {
-        reference.mean.pixels[p] = 0.5F * (a.pixels[p] + b.pixels[p]);
-        reference.half_difference.pixels[p] = 0.5F * (a.pixels[p] - b.pixels[p]);
-    }
+    const Reference reference = reference_of(a, b);
     const ErrorMeasures m = measure(noisy(256, 256, random, 1, 0.2F), reference);
     CHECK(m.reference_rmse == Approx(0.2 / std::sqrt(2)).epsilon(0.01));
     CHECK(m.rmse.value == Approx(0.2).epsilon(0.02));
     CHECK(m.r8.value == Approx(1).epsilon(0.2));
     CHECK(m.z_pixels < 1.4);
-    // The truth itself: nothing left but the noise of the estimate.
-    CHECK(measure(plain(256, 256, 1), reference).rmse.value < 0.03);
+    // The truth itself: its error is 0, which is below the reference's noise.
+    const ErrorMeasures truth = measure(plain(256, 256, 1), reference);
+    CHECK_FALSE(truth.rmse.resolved());
+    REQUIRE(truth.rmse.below);
+    CHECK(*truth.rmse.below < 0.03);
+    CHECK(*truth.rmse.below > 0.01);
+    CHECK(std::isnan(truth.r8.value));
+    CHECK_FALSE(truth.r8.below);
 }
 
 TEST_CASE("shared errors that change with the seed are no bias; those that stay are", "[quality]") {
@@ -154,9 +122,9 @@ TEST_CASE("shared errors that change with the seed are no bias; those that stay 
     // All tiles move together, so this is one Student's t of 15 degrees of freedom, not a mean of 16.
     CHECK(*c.z_seeds < 3);
     CHECK(*s.z_seeds > 10);
-    CHECK(s.mean_error == Approx(0.05).epsilon(0.02));
-    CHECK(s.mean_error_deviation < 0.001);
-    CHECK(c.mean_error_deviation > 0.005);
+    CHECK(s.mean_error.value == Approx(0.05).epsilon(0.02));
+    CHECK(s.mean_error.half_width < 0.001);
+    CHECK(c.mean_error.half_width > 0.02);
     CHECK(c.r8.value > 50);
 }
 
@@ -167,7 +135,7 @@ TEST_CASE("pixels outside whole blocks count for the RMSE only; a picture smalle
     const ErrorMeasures m = measure(image, ones(12, 9));
     CHECK(m.rmse.value == Approx(std::sqrt(1.0 / 108)));
     CHECK(std::isnan(m.r8.value));  // no error within the one whole block
-    CHECK(m.blocks.columns * m.blocks.rows == 1);
+    CHECK(m.sums.blocks.columns * m.sums.blocks.rows == 1);
     const ErrorMeasures tiny = measure(plain(3, 2, 2), ones(3, 2));
     CHECK(tiny.rmse.value == Approx(1));
     CHECK(std::isnan(tiny.r8.value));

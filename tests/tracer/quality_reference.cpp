@@ -59,14 +59,38 @@ TEST_CASE("the half difference is as large as the reference's error against a be
     CHECK(m.z_pixels < 1.6);
 }
 
+TEST_CASE("a clamp scales samples down to its value, keeps their colour and is refused unless above 0", "[quality]") {
+    RenderSettings settings{24, 16, {}, {}, {}};
+    settings.strategy.parameters.spp = 1;
+    const Image free = render(courtyard(), settings, {});
+    settings.clamp = 0.25F;
+    const Image clamped = render(courtyard(), settings, {});
+    std::size_t scaled = 0;
+    for (std::size_t p = 0; p < free.pixels.size(); ++p) {
+        const Vec3 before = free.pixels[p], after = clamped.pixels[p];
+        REQUIRE(max_component(after) <= 0.25F * 1.000001F);
+        if (max_component(before) <= 0.25F) {
+            REQUIRE(after == before);
+        } else {
+            ++scaled;
+            REQUIRE(after.x * before.y == Approx(after.y * before.x).margin(1e-6));
+        }
+    }
+    CHECK(scaled > 10);
+    for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::infinity(), std::nanf("")})
+        CHECK_THROWS_AS(check_clamp(bad), UsageError);
+    CHECK_NOTHROW(check_clamp({}));
+}
+
 TEST_CASE("every setting that changes the picture changes the key and the cached file's name", "[quality]") {
     const std::string key = reference_key(courtyard(), small());
-    std::vector<ReferenceSettings> others(5, small());
+    std::vector<ReferenceSettings> others(6, small());
     others[0].width = 25;
     others[1].height = 17;
     others[2].spp = 8;
     others[3].paths.bounces = 4;
     others[4].paths.russian_roulette = true;
+    others[5].clamp = 10;
     for (const auto& other : others) {
         CHECK(reference_key(courtyard(), other) != key);
         CHECK(cached_reference_path(reference_key(courtyard(), other)) != cached_reference_path(key));

@@ -34,13 +34,6 @@ DecorrelationSettings with_formula(double k, std::uint64_t n, unsigned s = 2) {
     return settings;
 }
 
-DecorrelationSettings with_cycles(std::uint64_t n) {
-    DecorrelationSettings settings;
-    settings.cycles_mu = true;
-    settings.spp = n;
-    return settings;
-}
-
 /// Calls f(x, pixel, index, dimension) for varied arguments, corners of the ranges included.
 template <class F>
 void for_many_places(F f) {
@@ -187,28 +180,16 @@ TEST_CASE("sampling: a mu too small to move a float still jitters in fixed point
     CHECK(*fixed.rbegin() <= 0xC0000000U + 128);
 }
 
-TEST_CASE("sampling: mu follows K * N^(-1/s), or 4/sqrt(N) for cycles") {
+TEST_CASE("sampling: mu follows K * N^(-1/s)") {
     CHECK(effective_mu(with_formula(2.5, 1024)) == 0.078125);
     CHECK(effective_mu(with_formula(1, 64, 1)) == 1.0 / 64);
     CHECK(effective_mu(with_formula(1, 4096, 3)) == Approx(1.0 / 16).epsilon(1e-14));
     CHECK(effective_mu(with_formula(0.5, std::uint64_t{1} << 32, 4000000000U)) == Approx(0.5));
     CHECK(effective_mu(with_formula(2.5, std::uint64_t{1} << 32)) == 2.5 / 65536);
     CHECK(effective_mu(with_formula(std::numeric_limits<double>::max(), 1)) == 1.0);
-    CHECK(effective_mu(with_cycles(256)) == 0.25);
-    CHECK(effective_mu(with_cycles(4)) == 1.0);
     DecorrelationSettings overridden = with_formula(2.5, 1024);
     overridden.mu = 0.1;
     CHECK(effective_mu(overridden) == 0.1);
-}
-
-TEST_CASE("sampling: cycles micro-jitter moves a point forward by less than mu, and at mu = 1 is Cranley-Patterson") {
-    const auto jitter = make_decorrelation("micro-jitter", with_cycles(256));
-    std::uint32_t highest = 0;
-    for (std::uint32_t p = 0; p < 4096; ++p) highest = std::max(highest, jitter->apply(0, p, 0, 3));
-    CHECK(highest < 0x40000000U);
-    CHECK(highest > 0x3F800000U);
-    check_equal_up_to_shift(*make_decorrelation("micro-jitter", with_cycles(16)),
-                            *make_decorrelation("cranley-patterson", {}), 0);
 }
 
 TEST_CASE(
@@ -233,7 +214,6 @@ TEST_CASE("sampling: parameters say K, s and the effective mu as the user gave t
     CHECK(make_decorrelation("micro-jitter", with_formula(4, 10))->parameters() == "K=4 s=2 mu=1");
     CHECK(make_decorrelation("micro-jitter", with_mu(0.1))->parameters() == "mu=0.1");
     CHECK(make_decorrelation("micro-jitter", with_mu(1.58))->parameters() == "mu=1");
-    CHECK(make_decorrelation("micro-jitter", with_cycles(256))->parameters() == "mu=cycles(0.25)");
 }
 
 TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrelation") {
@@ -251,9 +231,6 @@ TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrel
     check_refused(classes, "must be 1 to 256, found 0");
     classes.interleave = 257;
     check_refused(classes, "must be 1 to 256, found 257");
-    DecorrelationSettings twice = with_cycles(16);
-    twice.mu = 0.1;
-    check_refused(twice, "not both");
     CHECK_NOTHROW(make_decorrelation("micro-jitter", with_formula(2.5, std::uint64_t{1} << 32)));
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("sampling: s = full is all dimensions of the path, after which mu is u
     settings.parameters.full_s = true;
     const SamplingStrategy full(settings, 26);
     CHECK(full.parameters() == "K=2.5 s=full(26) mu=1");
-    CHECK_THAT(full.warning(), Catch::Contains("clamped to 1"));
+    CHECK_THAT(full.warnings().at(0), Catch::Contains("clamped to 1"));
     settings.parameters.full_s = false;
     settings.parameters.s = 26;
     const SamplingStrategy joint(settings, 26);

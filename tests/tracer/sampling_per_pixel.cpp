@@ -198,28 +198,6 @@ TEST_CASE("sampling: owen, net-micro-jitter, Cranley-Patterson and random have n
     CHECK(bias_z(strategy("sobol", "micro-jitter", 16), 16, smooth_integral, smooth) > limit);  // the test has teeth
 }
 
-TEST_CASE(
-    "sampling: scrambling-distance is micro-jitter --mu cycles, and with a given mu a share of Cranley-Patterson") {
-    const auto automatic = strategy("sobol", "scrambling-distance", 256);
-    const auto alias = strategy("sobol", "micro-jitter", 256, [](auto& p) { p.cycles_mu = true; });
-    const auto whole = strategy("sobol", "scrambling-distance", 256, [](auto& p) { p.mu = 1; });
-    const auto rotation = strategy("sobol", "cranley-patterson", 256);
-    const auto none = strategy("sobol", "scrambling-distance", 256, [](auto& p) { p.mu = 5e-324; });
-    const auto tenth = strategy("sobol", "scrambling-distance", 256, [](auto& p) { p.mu = 0.1; });
-    CHECK(automatic.parameters() == "mu=cycles(0.25)");
-    CHECK(alias.parameters() == automatic.parameters());
-    CHECK(tenth.parameters() == "mu=0.1");
-    for (std::uint32_t p = 0; p < 1000; ++p) {
-        REQUIRE(automatic.value(7, p, 0, 3) == alias.value(7, p, 0, 3));
-        REQUIRE(whole.value(7, p, 0, 3) == rotation.value(7, p, 0, 3));
-        REQUIRE(none.value(7, p, 0, 3) == 7);
-        REQUIRE((tenth.value(7, p, 0, 3) - 7) * 0x1p-32 < 0.1);
-    }
-    const auto clamped = strategy("sobol", "scrambling-distance", 4, [](auto& p) { p.mu = 1.5; });
-    CHECK_THAT(clamped.warning(), Catch::Contains("mu 1.5 clamped to 1"));
-    CHECK(strategy("sobol", "scrambling-distance", 16).warning().empty());
-}
-
 TEST_CASE("sampling: uniform-jitter puts one point in each of the N strata, all at the same place in it") {
     for (const std::string sequence : {"sobol", "sobol-owen-02", "pmj02"}) {
         const auto s = strategy(sequence, "uniform-jitter", 128);

@@ -87,9 +87,9 @@ TEST_CASE("sampling: the default strategy is the paper's: Sobol, micro-jitter, K
     CHECK(paper.settings().sequence == "sobol");
     CHECK(paper.settings().decorrelation == "micro-jitter");
     CHECK(paper.parameters() == "K=2.5 s=2 mu=0.078125");
-    CHECK(paper.warning().empty());
+    CHECK(paper.warnings().empty());
     settings.parameters.spp = 4;
-    CHECK_THAT(SamplingStrategy(settings, 26).warning(), Catch::Contains("mu 1.25 clamped to 1"));
+    CHECK_THAT(SamplingStrategy(settings, 26).warnings().at(0), Catch::Contains("mu 1.25 clamped to 1"));
 }
 
 TEST_CASE("sampling: paths of 1024 dimensions are accepted and of 1025 refused in one line") {

@@ -23,7 +23,7 @@ std::vector<Sum> render_half(const PreparedScene& scene, const ReferenceSettings
                              std::uint64_t seed, const std::function<void(std::uint64_t)>& progress) {
     std::vector<Sum> mean(std::size_t{settings.width} * settings.height);
     for (std::uint64_t done = 0; done < spp; done += block, seed += 2) {
-        RenderSettings part{settings.width, settings.height, settings.paths, {}};
+        RenderSettings part{settings.width, settings.height, settings.paths, {}, settings.clamp};
         part.strategy.decorrelation = settings.decorrelation;
         part.strategy.sequence = settings.sequence;
         part.strategy.parameters.spp = std::min(block, spp - done);
@@ -59,6 +59,7 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     if (scene.sun)
         key += fmt::format("; sun {} irradiance {} radius {}", text(scene.sun->direction), text(scene.sun->irradiance),
                            scene.sun->angular_radius);
+    if (settings.clamp) key += fmt::format("; samples clamped to {}", *settings.clamp);
     return key;
 }
 

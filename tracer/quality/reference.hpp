@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "tracer/image.hpp"
@@ -26,6 +27,7 @@ struct ReferenceSettings {
     std::uint64_t spp = 1024;  ///< samples per pixel of both halves together, at least 2; odd numbers are rounded up
     /// Must be unbiased and draw each pixel's numbers independently of other pixels' and of other seeds'.
     std::string decorrelation = "random", sequence = "sobol";
+    std::optional<float> clamp{};  ///< as RenderSettings::clamp; must be that of the pictures held against it
 };
 
 /// Everything the reference depends on, in words, the scene's content by its hash. Equal keys, equal pictures.

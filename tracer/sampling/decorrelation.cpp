@@ -43,24 +43,21 @@ void check_settings(const DecorrelationSettings& settings) {
             "sampling: the M of M x M pixel classes must be 1 to {}, found {}: give --interleave 8, the default",
             max_interleave, settings.interleave));
     }
-    if (settings.mu) {
-        check_nonnegative("mu", *settings.mu, "0.1");
-        if (settings.cycles_mu) {
-            throw UsageError(
-                fmt::format("sampling: mu must be given once, found {} and cycles: give a number or cycles, not both",
-                            *settings.mu));
-        }
-    }
+    if (settings.mu) check_nonnegative("mu", *settings.mu, "0.1");
+    check_cycles(settings.cycles);
 }
 
 double requested_mu(const DecorrelationSettings& settings) {
     if (settings.mu) return *settings.mu;
     const auto n = static_cast<double>(settings.spp);
-    if (settings.cycles_mu) return 4.0 / std::sqrt(n);
     // The two common cases need no pow(), whose last digit depends on the C library and processor.
     if (settings.s == 1) return settings.k / n;
     if (settings.s == 2) return settings.k / std::sqrt(n);
     return settings.k / std::pow(n, 1.0 / settings.s);
+}
+
+double scrambling_distance(const DecorrelationSettings& settings) {
+    return settings.mu ? *settings.mu : cycles_distance(settings.cycles, settings.spp);
 }
 
 double effective_mu(const DecorrelationSettings& settings) { return std::min(1.0, requested_mu(settings)); }
@@ -105,6 +102,35 @@ unsigned require_power_of_two(const std::string& decorrelation, const Decorrelat
     throw UsageError(
         fmt::format("sampling: {} needs a whole net, so N must be a power of two, found {}: give N = {} or {}",
                     decorrelation, settings.spp, std::bit_floor(settings.spp), std::bit_ceil(settings.spp)));
+}
+
+const char* to_string(Parameter parameter) {
+    switch (parameter) {
+        case Parameter::sequence:
+            return "sequence";
+        case Parameter::seed:
+            return "seed";
+        case Parameter::k:
+            return "k";
+        case Parameter::s:
+            return "s";
+        case Parameter::mu:
+            return "mu";
+        case Parameter::interleave:
+            return "interleave";
+        case Parameter::cycles_multiplier:
+            return "cycles-multiplier";
+        case Parameter::cycles_min_samples:
+            return "cycles-min-samples";
+        case Parameter::cycles_noise_threshold:
+            return "cycles-noise-threshold";
+    }
+    return "";
+}
+
+bool DecorrelationEntry::reads_parameter(Parameter parameter, const DecorrelationSettings& settings) const {
+    const std::vector<Parameter> all = reads(settings);
+    return std::find(all.begin(), all.end(), parameter) != all.end();
 }
 
 const DecorrelationEntry& find_decorrelation(const std::string& name) {

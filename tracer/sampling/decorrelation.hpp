@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tracer/sampling/cycles_distance.hpp"
 #include "tracer/sampling/sequence.hpp"
 
 namespace raycache::tracer {
@@ -22,7 +23,7 @@ struct DecorrelationSettings {
     unsigned s = 2;                   ///< dimension in the same formula
     bool full_s = false;              ///< s = `dimensions` instead
     std::optional<double> mu;         ///< given directly, 0 … 1; overrides K and s
-    bool cycles_mu = false;           ///< `--mu cycles`: mu = min(1, 4/sqrt(N)), one-sided offset in [0, mu)
+    CyclesSettings cycles;            ///< what scrambling-distance makes its mu of, unless `mu` is given
     unsigned interleave = 8;          ///< m of m x m pixel classes, 1 … max_interleave
 
     // What the user does not type: SamplingStrategy and its callers fill these in.
@@ -31,6 +32,21 @@ struct DecorrelationSettings {
 };
 
 inline constexpr unsigned max_interleave = 256;
+
+/// What a user may set, as typed: to_string() is the name of the option. The sequence counts as one.
+enum class Parameter {
+    sequence,
+    seed,
+    k,
+    s,
+    mu,
+    interleave,
+    cycles_multiplier,
+    cycles_min_samples,
+    cycles_noise_threshold
+};
+/// "k", "cycles-min-samples", …
+const char* to_string(Parameter);
 
 class Decorrelation {
 public:
@@ -48,21 +64,30 @@ struct DecorrelationEntry {
     std::string name, description;
     /// For that sequence, which need not outlive the call. Throws UsageError where the two together are not defined.
     std::unique_ptr<Decorrelation> (*make)(const DecorrelationSettings&, const Sequence&);
+    /// Which parameters change a value under those settings; all others may be anything.
+    std::vector<Parameter> (*reads)(const DecorrelationSettings&);
     bool has_classes = false;  ///< pixels of one class (px mod m, py mod m) share what others do not
+    /// A pixel's values are uniform and independent of other pixels' for every sequence, given its points: pictures
+    /// have no bias and neighbours no shared error.
+    bool independent_pixels = false;
+
+    bool reads_parameter(Parameter, const DecorrelationSettings&) const;
 };
 const std::vector<DecorrelationEntry>& decorrelations();
 
 /// Throws UsageError unless N is 1 … 2^32.
 void check_spp(std::uint64_t spp);
 
-/// Throws UsageError for N = 0 or above 2^32, K or mu negative or not finite, s = 0, mu given both as a number and as
-/// cycles_mu, and an `interleave` out of range: for every decorrelation, even one that ignores the field. mu above 1 is
-/// not an error.
+/// Throws UsageError for N = 0 or above 2^32, K or mu negative or not finite, s = 0, an `interleave` out of range and
+/// as check_cycles() does: for every decorrelation, even one that ignores the field. mu above 1 is not an error.
 void check_settings(const DecorrelationSettings&);
 
-/// mu as the settings ask for it, before the clamp: `mu` if given, else 4/sqrt(N) for cycles_mu, else K * N^(-1/s)
-/// (eq. 2 of the paper). Precondition: check_settings() passes; K and s are numbers (resolve_k_and_s).
+/// mu of micro-jitter as the settings ask for it, before the clamp: `mu` if given, else K * N^(-1/s) (eq. 2 of the
+/// paper). Precondition: check_settings() passes; K and s are numbers (resolve_k_and_s).
 double requested_mu(const DecorrelationSettings&);
+
+/// mu of scrambling-distance before the clamp: `mu` if given, else cycles_distance().
+double scrambling_distance(const DecorrelationSettings&);
 
 /// min(1, requested_mu): above 1 the wrapped jitter would cover part of the unit interval twice.
 double effective_mu(const DecorrelationSettings&);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <unordered_set>
 
@@ -76,6 +77,20 @@ SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32
     if (settings.independent_pair)
         decorrelation_ = std::make_unique<IndependentPair>(std::move(decorrelation_), *settings.independent_pair,
                                                            settings.parameters);
+}
+
+std::vector<std::string> SamplingStrategy::warnings() const {
+    std::vector<std::string> lines;
+    if (const std::string line = decorrelation_->warning(); !line.empty()) lines.push_back(line);
+    const std::uint64_t n = settings_.parameters.spp;
+    const DecorrelationEntry& entry = find_decorrelation(settings_.decorrelation);
+    if (sequence_->net_dimensions() != 0 && !std::has_single_bit(n) &&
+        entry.reads_parameter(Parameter::sequence, settings_.parameters))
+        lines.push_back(fmt::format(
+            "N = {} is no power of two: the points of sequence '{}' are then no whole net and spread less evenly; "
+            "choose {} or {}",
+            n, settings_.sequence, std::bit_floor(n), std::bit_ceil(n)));
+    return lines;
 }
 
 std::vector<std::uint32_t> SamplingStrategy::base_point(std::uint64_t index) const {

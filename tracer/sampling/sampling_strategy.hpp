@@ -39,7 +39,9 @@ public:
     }
     const StrategySettings& settings() const { return settings_; }
     std::string parameters() const { return decorrelation_->parameters(); }
-    std::string warning() const { return decorrelation_->warning(); }
+    /// Lines for the user about settings that were adjusted or that waste what the sequence offers, such as an N
+    /// between two powers of two.
+    std::vector<std::string> warnings() const;
     std::uint32_t dimensions() const { return dimensions_; }
 
 private:

@@ -35,7 +35,8 @@ private:
 
 struct SequenceEntry {
     std::string name, description;
-    std::unique_ptr<Sequence> (*make)(std::uint64_t seed);  ///< plain sequences ignore the seed
+    std::unique_ptr<Sequence> (*make)(std::uint64_t seed);
+    bool reads_seed = true;  ///< plain sequences do not
 };
 const std::vector<SequenceEntry>& sequences();
 

@@ -52,6 +52,9 @@ DecorrelationEntry blue_noise_entry() {
     return {"blue-noise", "Cranley-Patterson rotation by a blue-noise mask: neighbours' offsets lie far apart",
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<BlueNoise>(settings, sequence);
+            },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed};
             }};
 }
 

@@ -17,7 +17,8 @@ DecorrelationEntry coherent_entry() {
     return {"coherent", "the same points for every pixel",
             [](const DecorrelationSettings&, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<Coherent>();
-            }};
+            },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> { return {Parameter::sequence}; }};
 }
 
 }  // namespace raycache::tracer

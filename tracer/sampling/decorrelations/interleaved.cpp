@@ -37,6 +37,9 @@ DecorrelationEntry interleaved_entry() {
             [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<Interleaved>(settings);
             },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed, Parameter::interleave};
+            },
             true};
 }
 

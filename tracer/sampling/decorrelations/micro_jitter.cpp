@@ -2,7 +2,7 @@
 // samples; mu = min(1, K * N^(-1/s)). A. Dufay, P. Lecocq, R. Pacanowski, J.-E. Marvie, X. Granier, "Cache-friendly
 // micro-jittered sampling", SIGGRAPH 2016 Talks, eq. 1 and 2. K is a number or (N * D*_N)^(1/s), a reading of the
 // paper's "constant representative of the star discrepancy"; s the dimensions sampled jointly: 2 for the decisions of a
-// path one by one, or any other number, or all of them. With cycles_mu: scrambling-distance, automatic.
+// path one by one, or any other number, or all of them.
 //
 // xi is that of cranley-patterson for the same seed: at mu = 1 the two differ by a shift of 1/2 (2^31).
 #include <fmt/format.h>
@@ -12,8 +12,6 @@
 #include "tracer/sampling/hash.hpp"
 
 namespace raycache::tracer {
-
-DecorrelationEntry scrambling_distance_entry();
 
 namespace {
 
@@ -52,8 +50,11 @@ private:
 DecorrelationEntry micro_jitter_entry() {
     return {"micro-jitter", "a random offset from a window of width mu per pixel and dimension, modulo 1: the paper",
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                if (settings.cycles_mu) return scrambling_distance_entry().make(settings, sequence);
                 return std::make_unique<MicroJitter>(settings.mu ? settings : resolve_k_and_s(settings, sequence));
+            },
+            [](const DecorrelationSettings& settings) -> std::vector<Parameter> {
+                if (settings.mu) return {Parameter::sequence, Parameter::seed, Parameter::mu};
+                return {Parameter::sequence, Parameter::seed, Parameter::k, Parameter::s};
             }};
 }
 

@@ -36,6 +36,9 @@ DecorrelationEntry net_micro_jitter_entry() {
             "leading bits of a net shared, the rest Owen-scrambled per pixel; unbiased in sets of 4",
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<NetMicroJitter>(settings, sequence);
+            },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed};
             }};
 }
 

@@ -47,6 +47,9 @@ DecorrelationEntry net_micro_jitter_fast_entry() {
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<FastNetMicroJitter>(settings, sequence);
             },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed, Parameter::interleave};
+            },
             true};
 }
 

@@ -25,11 +25,17 @@ private:
 }  // namespace
 
 DecorrelationEntry owen_entry() {
-    return {"owen", "nested uniform scrambling per pixel and dimension (Owen 1995, hash-based); nets in base 2 only",
+    return {"owen",
+            "nested uniform scrambling per pixel and dimension (Owen 1995, hash-based); nets in base 2 only",
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 require_net("owen", sequence, 1);
                 return std::make_unique<Owen>(settings.seed);
-            }};
+            },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed};
+            },
+            false,
+            true};
 }
 
 }  // namespace raycache::tracer

@@ -36,6 +36,9 @@ DecorrelationEntry uniform_jitter_entry() {
             [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 require_net("uniform-jitter", sequence, 1);
                 return std::make_unique<UniformJitter>(settings.seed, require_power_of_two("uniform-jitter", settings));
+            },
+            [](const DecorrelationSettings&) -> std::vector<Parameter> {
+                return {Parameter::sequence, Parameter::seed};
             }};
 }
 

@@ -1,5 +1,6 @@
 #include "tracer/sampling/measures/union_density.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -35,10 +36,11 @@ std::optional<JitterWindow> jitter_window(const StrategySettings& strategy, std:
     }
     const bool automatic = name == "scrambling-distance";
     if (name != "micro-jitter" && !automatic) return {};
-    if (automatic && !settings.mu) settings.cycles_mu = true;
-    const double mu = effective_mu(settings.mu || settings.cycles_mu ? settings : resolve_k_and_s(settings, *sequence));
+    const double mu = automatic     ? std::min(1.0, scrambling_distance(settings))
+                      : settings.mu ? effective_mu(settings)
+                                    : effective_mu(resolve_k_and_s(settings, *sequence));
     const auto width = static_cast<std::uint64_t>(mu * 0x1p32 + 0.5);  // as FixedMu
-    return JitterWindow{automatic || settings.cycles_mu ? 0 : width / 2, width};
+    return JitterWindow{automatic ? 0 : width / 2, width};
 }
 
 UnionDensity union_density(std::span<const FixedPoint2> points, const JitterWindow& window) {

@@ -40,7 +40,7 @@ private:
 
 SequenceEntry halton_entry() {
     return {"halton", "Halton sequence, radical inverses in the first 1024 primes, not scrambled",
-            [](std::uint64_t) -> std::unique_ptr<Sequence> { return std::make_unique<Halton>(); }};
+            [](std::uint64_t) -> std::unique_ptr<Sequence> { return std::make_unique<Halton>(); }, false};
 }
 
 }  // namespace raycache::tracer

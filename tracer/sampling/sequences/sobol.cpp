@@ -30,7 +30,7 @@ private:
 
 SequenceEntry sobol_entry() {
     return {"sobol", "Sobol sequence, Joe-Kuo direction numbers (new-joe-kuo-6), 1024 dimensions",
-            [](std::uint64_t) -> std::unique_ptr<Sequence> { return std::make_unique<Sobol>(); }};
+            [](std::uint64_t) -> std::unique_ptr<Sequence> { return std::make_unique<Sobol>(); }, false};
 }
 
 }  // namespace raycache::tracer
