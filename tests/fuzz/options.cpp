@@ -44,7 +44,7 @@ void make_settings(const std::vector<std::string>& words) {
         const tracer::CaptureSettings settings = sampling.capture(scene, sequence, strategy, spp);
         fuzz::require(settings.width > 0 && settings.height > 0, "a picture has pixels");
         fuzz::require(settings.command.find('\n') == std::string::npos, "a command is one line");
-        if (spp <= most_spp) tools::settings_warning(settings);
+        if (spp <= most_spp) tools::settings_warnings(settings);
     });
     for (std::string& name : gpus.names)
         if (cachesim::is_gpu_file(name)) name = "h100";  // no file is opened

@@ -110,21 +110,21 @@ RmseRatio rmse_ratio(const ErrorMeasures& row, const ErrorMeasures& baseline) {
     };
     ratio.baseline_is_zero = baseline.rmse.value == 0;
     ratio.robust = of(row.robust_rmse, baseline.robust_rmse);
-    const Measured plain = of(row.rmse, baseline.rmse);
-    if (!plain.resolved()) {
-        ratio.value = plain;
-        return ratio;
+    ratio.value = of(row.rmse, baseline.rmse);
+    const bool resolved = ratio.value.resolved();
+    if (resolved) {
+        const std::array<const ErrorSums*, 2> both{&row.sums, &baseline.sums};
+        ratio.value = error_interval(both, [](Totals t) {
+            return t[1][ErrorSum::square] > 0
+                       ? std::sqrt(std::max(0.0, t[0][ErrorSum::square]) / t[1][ErrorSum::square])
+                       : not_a_number;
+        });
     }
-    const std::array<const ErrorSums*, 2> both{&row.sums, &baseline.sums};
-    ratio.value = error_interval(both, [](Totals t) {
-        return t[1][ErrorSum::square] > 0 ? std::sqrt(std::max(0.0, t[0][ErrorSum::square]) / t[1][ErrorSum::square])
-                                          : not_a_number;
-    });
     if (&row == &baseline) return ratio;
-    if (const auto few = std::max(row.few_pixels, baseline.few_pixels,
-                                  [](const auto& a, const auto& b) { return (a ? a->share : 0) < (b ? b->share : 0); }))
-        ratio.decided_by_pixels = few->count;
-    else if (std::fabs(ratio.value.value - 1) > ratio.value.half_width)
+    const std::optional<FewPixels>&a = row.few_pixels, &b = baseline.few_pixels;
+    if (a || b)
+        ratio.decided_by_pixels = (a && (!b || a->share > b->share) ? a : b)->count;
+    else if (resolved && std::fabs(ratio.value.value - 1) > ratio.value.half_width)
         ratio.decided_by_pixels = few_pixels_between(row.sums, baseline.sums);
     if (ratio.decided_by_pixels) ratio.value = undefined();
     return ratio;
