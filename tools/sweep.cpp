@@ -101,8 +101,9 @@ void run(const Options& o, const CLI::App& command) {
             request.cases.emplace_back(o.common.sampling.capture(o.common.scene, o.sequence, strategy, o.spp));
         settings.strategy.parameters.mu = mu;
     };
-    if (!tracer::find_decorrelation(o.swept).reads_parameter(tracer::Parameter::mu,
-                                                             tracer::DecorrelationSettings{.mu = 1}))
+    tracer::DecorrelationSettings with_mu;
+    with_mu.mu = 1;
+    if (!tracer::find_decorrelation(o.swept).reads_parameter(tracer::Parameter::mu, with_mu))
         throw UsageError(
             fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o.swept));
     for (const auto& [option, value] : {std::pair("--max-r8", o.max_r8), std::pair("--max-rmse", o.max_rmse)})
