@@ -58,8 +58,8 @@ std::string QualityOptions::baseline_of(const std::vector<std::string>& strategi
     return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
 }
 
-QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest request, const FileNames& outputs, Deliveries& deliveries,
-                                      Progress& progress) const {
+QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest request, const FileNames& outputs,
+                                      Deliveries& deliveries, Progress& progress) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
     const auto gpus = gpu.load(outputs);
     gpu.check_timed(gpus);
@@ -90,9 +90,9 @@ QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest re
                   render_cost(std::uint64_t{first.width} * first.height * reference_spp, first.paths.bounces));
     const auto prepared = scene.prepare(outputs, progress);
     QualityReport result;
-    tracer::Reference reference =
-        find_reference(*prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol", clamp},
-                       reference_file, result.reference_path, deliveries, progress);
+    tracer::Reference reference = find_reference(
+        *prepared, {first.width, first.height, first.paths, reference_spp, reference_strategy, "sobol", clamp},
+        reference_file, result.reference_path, deliveries, progress);
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";

@@ -126,11 +126,11 @@ void run(const Options& o, const CLI::App& command) {
     const QualityReport report = o.common.measure(command, std::move(request), {}, deliveries, progress);
     const Recommendation advice = recommend(o, report);
     deliveries.attempt([&] {
-        print(o.common.json  ? o.common.json.document(to_json(report, &advice), report.subject)
-              : o.common.csv ? to_csv(report)
-                             : to_text(report) + "\n" +
-                                   cachesim::break_lines("recommendation: " + advice.text + "\n",
-                                                         cachesim::text_width, 2));
+        print(o.common.json ? o.common.json.document(to_json(report, &advice), report.subject)
+              : o.common.csv
+                  ? to_csv(report)
+                  : to_text(report) + "\n" +
+                        cachesim::break_lines("recommendation: " + advice.text + "\n", cachesim::text_width, 2));
     });
     deliveries.finish();
 }

@@ -112,6 +112,10 @@ RmseRatio rmse_ratio(const ErrorMeasures& row, const ErrorMeasures& baseline) {
     ratio.robust = of(row.robust_rmse, baseline.robust_rmse);
     ratio.value = of(row.rmse, baseline.rmse);
     const bool resolved = ratio.value.resolved();
+    if (&row == &baseline) {
+        if (resolved) ratio.value.half_width = 0;
+        return ratio;
+    }
     if (resolved) {
         const std::array<const ErrorSums*, 2> both{&row.sums, &baseline.sums};
         ratio.value = error_interval(both, [](Totals t) {
@@ -120,7 +124,6 @@ RmseRatio rmse_ratio(const ErrorMeasures& row, const ErrorMeasures& baseline) {
                        : not_a_number;
         });
     }
-    if (&row == &baseline) return ratio;
     const std::optional<FewPixels>&a = row.few_pixels, &b = baseline.few_pixels;
     if (a || b)
         ratio.decided_by_pixels = (a && (!b || a->share > b->share) ? a : b)->count;
