@@ -17,11 +17,13 @@ class IdleOptions(ProgramTest):
         return {line.split(" has no effect: ")[0] for line in lines if " has no effect: " in line}
 
     def capture(self, *options):
-        return self.warned("capture", *SMALL, "--trace-samples", "1", "--spp", "64", *options, "-o", "t.rct")
+        usual = [word for option, value in (("--trace-samples", "1"), ("--spp", "64")) if option not in options
+                 for word in (option, value)]
+        return self.warned("capture", *SMALL, *usual, *options, "-o", "t.rct")
 
     def test_every_parameter_is_warned_of_with_every_strategy_that_does_not_read_it(self):
         given = [word for pair in CHANGES.items() if pair[0] != "--mu" for word in pair]
-        for strategy in [entry["name"] for entry in self.succeeds("list", "strategies", "--json").json["strategies"]]:
+        for strategy in [entry["name"] for entry in self.succeeds("list", "strategies", "--json").json["topics"]["strategies"]]:
             options = [*given, "--strategy", strategy]
             expected = {option for option in CHANGES if option != "--mu" and strategy not in READERS[option]}
             if strategy == "scrambling-distance":
