@@ -221,12 +221,21 @@ tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, 
     return settings;
 }
 
-/// Options of scrambling-distance that differ from the defaults.
-std::string SamplingOptions::cycles_command() const {
+/// The options that the strategy reads: another command with them would be warned of (idle_options.hpp).
+std::string SamplingOptions::parameter_command(const tracer::CaptureSettings& settings) const {
+    const tracer::DecorrelationEntry& entry = tracer::find_decorrelation(settings.strategy.decorrelation);
+    const auto reads = [&](tracer::Parameter p) { return entry.reads_parameter(p, settings.strategy.parameters); };
     std::string text;
-    if (cycles_multiplier != 1) text += fmt::format(" --cycles-multiplier {}", cycles_multiplier);
-    if (cycles_min_samples != 0) text += fmt::format(" --cycles-min-samples {}", cycles_min_samples);
-    if (cycles_noise_threshold != "0.01") text += " --cycles-noise-threshold " + cycles_noise_threshold;
+    if (reads(tracer::Parameter::k)) text += fmt::format(" --k {} --s {}", k, s);
+    if (reads(tracer::Parameter::mu)) text += " --mu " + mu;
+    if (reads(tracer::Parameter::cycles_multiplier) && cycles_multiplier != 1)
+        text += fmt::format(" --cycles-multiplier {}", cycles_multiplier);
+    if (reads(tracer::Parameter::cycles_min_samples) && cycles_min_samples != 0)
+        text += fmt::format(" --cycles-min-samples {}", cycles_min_samples);
+    if (reads(tracer::Parameter::cycles_noise_threshold) && cycles_noise_threshold != "0.01")
+        text += " --cycles-noise-threshold " + cycles_noise_threshold;
+    const bool classes = reads(tracer::Parameter::interleave) || settings.thread_map == tracer::ThreadMap::classes;
+    if (classes && interleave != 8) text += fmt::format(" --interleave {}", interleave);
     return text;
 }
 
@@ -261,10 +270,9 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
     settings.program = program_name();
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {} --bounces {}{} "
-        "--thread-map {} --k {} --s {}{}{} --seed {}{}",
-        scene.command(), decorrelation, sequence, spp, trace_samples, resolution, bounces, path_command(),
-        tracer::to_string(settings.thread_map), k, s, (mu.empty() ? "" : " --mu " + mu) + cycles_command(),
-        interleave == 8 ? "" : fmt::format(" --interleave {}", interleave), seed,
+        "--thread-map {}{} --seed {}{}",
+        scene.command(), decorrelation, sequence, spp, std::min(trace_samples, spp), resolution, bounces,
+        path_command(), tracer::to_string(settings.thread_map), parameter_command(settings), seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;
 }

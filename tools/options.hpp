@@ -61,7 +61,7 @@ struct SamplingOptions {
 
 private:
     std::string path_command() const;
-    std::string cycles_command() const;
+    std::string parameter_command(const tracer::CaptureSettings&) const;
 };
 
 /// --threads, and the limit it sets for the life of the object this returns.

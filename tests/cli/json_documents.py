@@ -72,8 +72,8 @@ class JsonDocuments(ProgramTest):
             self.assertEqual(again.stdout, first.stdout)
 
     def test_settings_hold_what_was_given_and_every_default(self):
-        settings = self.succeeds(*FUSED, "--strategy", "coherent", *GPU, "--k", "discrepancy", "--json").json["settings"]
-        for key, value in (("scene", "courtyard"), ("detail", 50000), ("strategy", ["coherent"]), ("sequence", ["sobol"]),
+        settings = self.succeeds(*FUSED, "--strategy", "micro-jitter", *GPU, "--k", "discrepancy", "--json").json["settings"]
+        for key, value in (("scene", "courtyard"), ("detail", 50000), ("strategy", ["micro-jitter"]), ("sequence", ["sobol"]),
                            ("spp", [64]), ("k", ["discrepancy"]), ("s", 2), ("mu", None), ("resolution", "64x48"),
                            ("bounces", 3), ("lights", "auto"), ("seed", 1), ("execution", "megakernel"),
                            ("order", "none"), ("timed", False), ("gpu", ["gtx-980-ti"]), ("by", "none"),
