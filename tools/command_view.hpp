@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace raycache::tools {
+
+class Command;
+class Program;
 
 struct OptionView {
     std::vector<std::string> names;  ///< "--output", "-o"; empty for a positional argument
@@ -28,8 +27,8 @@ struct CommandView {
     std::vector<OptionView> options;
 };
 
-CommandView view_of(const CLI::App& command);
+CommandView view_of(const Command&);
 /// All that --help lists.
-std::vector<CommandView> views_of_commands(const CLI::App& program);
+std::vector<CommandView> views_of_commands(const Program&);
 
 }  // namespace raycache::tools

@@ -1,25 +1,23 @@
 // The subcommands. Each adds itself to the program: its options, its help, and what runs when it is chosen.
 #pragma once
 
-namespace CLI {
-class App;
-}
-
 namespace raycache::tools {
 
-void add_render(CLI::App&);
-void add_capture(CLI::App&);
-void add_info(CLI::App&);
-void add_verify(CLI::App&);
-void add_replay(CLI::App&);
-void add_compare(CLI::App&);
-void add_explain(CLI::App&);
-void add_quality(CLI::App&);
-void add_sweep(CLI::App&);
-void add_export(CLI::App&);
-void add_import(CLI::App&);
-void add_samples(CLI::App&);
-void add_list(CLI::App&);
-void add_completion(CLI::App&);
+class Program;
+
+void add_render(Program&);
+void add_capture(Program&);
+void add_info(Program&);
+void add_verify(Program&);
+void add_replay(Program&);
+void add_compare(Program&);
+void add_explain(Program&);
+void add_quality(Program&);
+void add_sweep(Program&);
+void add_export(Program&);
+void add_import(Program&);
+void add_samples(Program&);
+void add_list(Program&);
+void add_completion(Program&);
 
 }  // namespace raycache::tools

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 
 #include "cachesim/gpus/gpu.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/program.hpp"
 #include "tools/samples_tables.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
@@ -35,12 +35,6 @@ std::vector<std::string> gpu_keys() {
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     return keys;
-}
-
-std::vector<std::string> split(const std::string& list) {
-    std::vector<std::string> words = CLI::detail::split(list, ',');
-    for (std::string& word : words) CLI::detail::trim(word);
-    return words;
 }
 
 /// What options and positional arguments of these names take, in every command.
@@ -72,7 +66,7 @@ const std::map<std::string, Candidates>& known() {
             {"--by", {{"none", "bounce", "ray", "object"}, {}}},
             {"--format", {{"dinero", "u64", "csv", "accel-sim"}, {}}},
             {"--level", {{"l1", "l2", "l3"}, {}}},
-            {"--table", {split(samples_table_names()), {}}},
+            {"--table", {samples_table_names(), {}}},
             {"TOPIC", {{"strategies", "sequences", "gpus", "layouts", "thread-maps", "orders", "scenes"}, {}}},
             {"--output", any_file},
             {"--save", any_file},
@@ -91,8 +85,8 @@ struct Options {
     std::string shell;
 };
 
-void run(const Options& o, const CLI::App& app) {
-    const std::vector<CommandView> commands = views_of_commands(app);
+void run(const Options& o, const Program& program) {
+    const std::vector<CommandView> commands = views_of_commands(program);
     if (o.shell == "bash") return print(bash_completion(commands));
     if (o.shell == "zsh") return print(zsh_completion(commands));
     std::string text;  // for man pages: what there is to describe
@@ -108,18 +102,16 @@ Candidates candidates_of(const OptionView& option) {
     return at == known().end() ? Candidates{} : at->second;
 }
 
-void add_completion(CLI::App& app) {
+void add_completion(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("completion", "Print a script that completes raycache's command lines");
-    command->group("");  // hidden
+    Command* command = program.add_subcommand("completion", "Print a script that completes raycache's command lines");
+    command->hide();
     command->add_option("SHELL", o->shell, "bash or zsh; or commands: every subcommand and what it does")
         ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "commands"}));
-    command->footer(
-        "Examples:\n"
-        "  source <(raycache completion bash)\n"
-        "  raycache completion zsh > ~/.zfunc/_raycache      # a folder of $fpath");
-    command->callback([o, &app] { run(*o, app); });
+        ->choices("shell", {"bash", "zsh", "commands"});
+    command->examples({"source <(raycache completion bash)",
+                       "raycache completion zsh > ~/.zfunc/_raycache      # a folder of $fpath"});
+    command->callback([o, &program] { run(*o, program); });
 }
 
 }  // namespace raycache::tools

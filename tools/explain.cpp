@@ -8,9 +8,11 @@
 #include "tools/gpu_options.hpp"
 #include "tools/heat_map.hpp"
 #include "tools/idle_options.hpp"
+#include "tools/inputs.hpp"
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/options.hpp"
+#include "tools/program.hpp"
 #include "tools/width_option.hpp"
 #include "traces/error.hpp"
 
@@ -18,7 +20,7 @@ namespace raycache::tools {
 namespace {
 
 struct Options {
-    std::vector<std::string> traces;
+    InputOptions inputs;
     SceneOptions scene;
     std::vector<std::string> strategies{"cranley-patterson", "micro-jitter"};
     std::string sequence = "sobol";
@@ -53,8 +55,10 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
     Deliveries deliveries;
     JsonSubject subject{{gpu}, {}};
     for (std::size_t i = 0; i < 2; ++i)
-        subject.traces.push_back(settings_json(*sources[i].header, o.traces.empty() ? "" : o.traces[i]));
-    deliveries.attempt([&] { print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e, o.width.columns())); });
+        subject.traces.push_back(settings_json(*sources[i].header, o.scene.source.empty() ? names[i] : ""));
+    deliveries.attempt([&] {
+        print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e, o.width.columns()));
+    });
     if (request.pixels)
         write_heat_maps(
             o.heat_map,
@@ -64,81 +68,86 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
     deliveries.finish();
 }
 
-void explain_scene(const Options& o, const CLI::App& command, const cachesim::Gpu& gpu, Progress& progress) {
+Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu) {
     std::vector<tracer::CaptureSettings> settings;
-    for (const std::string& strategy : o.strategies)
-        settings.push_back(o.sampling.capture(o.scene, o.sequence, strategy, o.spp));
-    warn_of_settings(command, settings);
-    double seconds = 0;
-    for (const auto& s : settings) seconds += trace_cost(s) + explain_cost(s, gpu.timing && !o.counts_only);
-    progress.expect("explain", Work::replay, seconds);
-    const auto scene = o.scene.prepare(heat_map_files(o.heat_map), progress);
-    std::vector<std::unique_ptr<tracer::Capture>> captures;
-    for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-    explain_and_print(o, gpu, sources_of(captures), o.strategies, progress);
+    for (const std::string& strategy : o->strategies)
+        settings.push_back(o->sampling.capture(o->scene, o->sequence, strategy, o->spp));
+    return [o, command, gpu, settings] {
+        warn_of_settings(*command, settings);
+        check_outputs(heat_map_files(o->heat_map));
+        const auto limit = o->threads.apply();
+        Progress progress("explain");
+        double seconds = 0;
+        for (const auto& s : settings) seconds += trace_cost(s) + explain_cost(s, gpu.timing && !o->counts_only);
+        progress.expect("explain", Work::replay, seconds);
+        const auto scene = o->scene.prepare(heat_map_files(o->heat_map), progress);
+        std::vector<std::unique_ptr<tracer::Capture>> captures;
+        for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
+        explain_and_print(*o, gpu, sources_of(captures), o->strategies, progress);
+    };
 }
 
-void run(const Options& o, const CLI::App& command) {
-    if (o.traces.empty() == o.scene.source.empty())
-        throw UsageError("nothing to explain; expected either two trace files or --scene, not both");
-    if (o.scene.source.empty() && o.traces.size() != 2)
-        throw UsageError(fmt::format("{} trace files; expected two: BASE and OTHER", o.traces.size()));
-    if (o.traces.empty() && o.strategies.size() != 2)
-        throw UsageError(fmt::format("--strategy with {} names; expected two: BASE,OTHER", o.strategies.size()));
-    if (!o.traces.empty())
-        for (const std::string& line : idle_on_traces(command)) warn(line);
-    if (!o.heat_map.empty()) check_heat_map_name(o.heat_map);
-    const FileNames outputs = heat_map_files(o.heat_map);
-    const auto gpus = o.gpu.load(outputs);
-    const cachesim::Gpu& gpu = gpus.front();
-    if (gpu.timing && !o.counts_only) o.gpu.check_timed(gpus);
-    refuse_overwriting(o.traces, outputs);
-    check_outputs(outputs);
-    const auto limit = o.threads.apply();
-    Progress progress("explain");
-    if (o.traces.empty()) return explain_scene(o, command, gpu, progress);
-    const TraceFiles files(o.traces);
-    explain_and_print(o, gpu, files.sources, o.traces, progress);
+Job plan_traces(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu,
+                const std::vector<std::string>& traces) {
+    if (traces.size() != 2)
+        throw UsageError(
+            fmt::format("{} trace file{}; expected two: BASE and OTHER", traces.size(), traces.size() == 1 ? "" : "s"));
+    refuse_overwriting(traces, heat_map_files(o->heat_map));
+    return [o, command, gpu, traces] {
+        for (const std::string& line : idle_on_traces(*command)) warn(line);
+        check_outputs(heat_map_files(o->heat_map));
+        const auto limit = o->threads.apply();
+        Progress progress("explain");
+        const TraceFiles files(traces);
+        explain_and_print(*o, gpu, files.sources, traces, progress);
+    };
+}
+
+Job plan(const std::shared_ptr<Options>& o, const Command& command) {
+    const Inputs inputs = o->inputs.sorted(command);
+    o->scene.source = inputs.scene;
+    if (!o->heat_map.empty()) check_heat_map_name(o->heat_map);
+    const cachesim::Gpu gpu = o->gpu.load_one(heat_map_files(o->heat_map), "explain");
+    if (gpu.timing && !o->counts_only) o->gpu.check_timed({gpu});
+    return inputs.scene.empty() ? plan_traces(o, &command, gpu, inputs.traces) : plan_scene(o, &command, gpu);
 }
 
 }  // namespace
 
-void add_explain(CLI::App& app) {
+void add_explain(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
-        "explain", "Explain why one trace causes more cache traffic than another, factor by factor and miss by miss");
-    command->add_option("TRACES", o->traces, "two trace files: BASE and OTHER");
-    command->add_option("--gpu", o->gpu.names, "GPU preset or FILE.toml (see 'raycache list gpus')")
-        ->required()
-        ->expected(1);
+    Command* command = program.add_subcommand(
+        "explain",
+        "Explain why one strategy causes more cache traffic than another, factor by factor and miss by miss");
+    o->inputs.add(*command, "two trace files: BASE and OTHER");
+    o->gpu.add_names(*command, "GPU preset or FILE.toml (see 'raycache list gpus')")->required()->count(1);
     o->gpu.add_changes(*command);
+    add_strategies(*command, o->strategies, false)->count(2)->type_name("BASE,OTHER");
+    command->add_option("--sequence", o->sequence, "with a scene: the sequence of both")
+        ->choices("sequence", sequence_names())
+        ->about_scene();
+    add_spp(*command, o->spp, "with a scene: size N of the sample set")->about_scene();
     command
         ->add_option("--by", o->by,
                      "the factors also for each: none, bounce (path vertex), ray (camera, bounce, shadow)")
-        ->check(CLI::IsMember({"none", "bounce", "ray"}))
-        ->capture_default_str();
+        ->choices("grouping", {"none", "bounce", "ray"})
+        ->type_name("WHAT");
     o->json.add(*command);
     o->width.add(*command);
     command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
-    command->add_option("--heatmap", o->heat_map,
-                        "FILE.exr: DRAM bytes, L1 visit miss rate and active lanes of each pixel; FILE.png shows them");
-    o->scene.add(*command, false);
-    command->add_option("--strategy", o->strategies, "with --scene: two decorrelations, BASE,OTHER")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->capture_default_str();
-    command->add_option("--sequence", o->sequence, "with --scene: the sequence of both")->capture_default_str();
-    command->add_option("--spp", o->spp, "with --scene: size N of the sample set")->capture_default_str();
+    command
+        ->add_option("--heatmap", o->heat_map,
+                     "DRAM bytes, L1 visit miss rate and active lanes of each pixel; FILE.png shows them")
+        ->type_name("FILE.exr");
+    o->threads.add(*command);
+    o->scene.add_view(*command);
     o->sampling.add_launches(*command);
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
-    o->threads.add(*command);
-    command->footer(
-        "Examples:\n"
-        "  raycache explain cp.rct mj.rct --gpu gtx-980-ti\n"
-        "  raycache explain cp.rct mj.rct --gpu gtx-980-ti --by bounce --heatmap why.exr\n"
-        "  raycache explain --scene courtyard --strategy cranley-patterson,coherent --spp 64 --gpu h100");
-    command->callback([o, command] { run(*o, *command); });
+    command->examples({"raycache explain courtyard --strategy cranley-patterson,coherent --spp 64 --gpu h100",
+                       "raycache explain cp.rct mj.rct --gpu gtx-980-ti",
+                       "raycache explain cp.rct mj.rct --gpu gtx-980-ti --by bounce --heatmap why.exr"});
+    command->plan([o, command] { return plan(o, *command); });
 }
 
 }  // namespace raycache::tools

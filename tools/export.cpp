@@ -1,8 +1,6 @@
 // raycache export: a trace, or what a cache is asked during its replay, for other tools.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "cachesim/export/sector_stream.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "tools/commands.hpp"
@@ -11,6 +9,7 @@
 #include "tools/gpu_options.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
+#include "tools/program.hpp"
 #include "tools/progress.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
@@ -32,11 +31,11 @@ const cachesim::SectorFormat* find_sector_format(const std::string& name) {
     return nullptr;
 }
 
-std::string format_names() {
-    std::string names;
-    for (const cachesim::SectorFormat& format : cachesim::sector_formats())
-        names += (names.empty() ? "" : ", ") + format.name;
-    return names + ", accel-sim";
+std::vector<std::string> format_names() {
+    std::vector<std::string> names;
+    for (const cachesim::SectorFormat& format : cachesim::sector_formats()) names.push_back(format.name);
+    names.emplace_back("accel-sim");
+    return names;
 }
 
 std::uint32_t choose_launch(const Options& o, const traces::Header& header) {
@@ -86,12 +85,8 @@ cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gp
     return {level, *o.sm, o.l1};
 }
 
-void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
-    if (o.gpu.names.empty())
-        throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
-    refuse_overwriting({o.trace}, {o.output});
-    const cachesim::Gpu gpu = o.gpu.load({o.output}).front();
-    const auto choice = choose_cache(o, gpu, format);
+void export_sectors(const Options& o, const cachesim::Gpu& gpu, const cachesim::SectorFormat& format,
+                    const cachesim::SectorStream::Choice& choice) {
     const traces::Reader reader(o.trace);
     const traces::Header& header = reader.header();
     refuse_wavefront(header, o.trace, "export");
@@ -116,67 +111,71 @@ void export_sectors(const Options& o, const cachesim::SectorFormat& format) {
 }
 
 void export_instructions(const Options& o) {
-    if (!o.gpu.names.empty() || !o.gpu.changes.empty() || o.gpu.warps_per_sm != 0 || o.sm || o.l1 || o.level != "l1")
-        throw UsageError(
-            "--format accel-sim with --gpu, --set, --warps-per-sm, --level, --sm or --l1; expected none: it holds a "
-            "whole launch");
-    refuse_overwriting({o.trace}, accel_sim_files(o.output));
     const traces::Reader reader(o.trace);
     refuse_wavefront(reader.header(), o.trace, "export");
     export_accel_sim(reader, choose_launch(o, reader.header()), o.traceg, o.output);
     warn_of_others(o, reader.header());
 }
 
-void run(const Options& o) {
-    if (o.format == "accel-sim") return export_instructions(o);
-    const cachesim::SectorFormat* sectors = find_sector_format(o.format);
-    if (!sectors) throw UsageError(fmt::format("--format '{}'; expected one of: {}", o.format, format_names()));
-    export_sectors(o, *sectors);
+Job plan(const std::shared_ptr<const Options>& o) {
+    if (o->format == "accel-sim") {
+        if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->level != "l1")
+            throw UsageError(
+                "--format accel-sim with --gpu, --set, --l1-kib, --l2-kib, --warps-per-sm, --level, --sm or --l1; "
+                "expected none: it holds a whole launch");
+        refuse_overwriting({o->trace}, accel_sim_files(o->output));
+        return [o] { export_instructions(*o); };
+    }
+    if (o->gpu.names.empty())
+        throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
+    refuse_overwriting({o->trace}, {o->output});
+    const cachesim::Gpu gpu = o->gpu.load_one({o->output}, "export");
+    const cachesim::SectorFormat* format = find_sector_format(o->format);
+    const auto choice = choose_cache(*o, gpu, *format);
+    return [o, gpu, format, choice] { export_sectors(*o, gpu, *format, choice); };
 }
 
 }  // namespace
 
-void add_export(CLI::App& app) {
+void add_export(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command =
-        app.add_subcommand("export", "Write a trace, or what a cache is asked during its replay, for other tools");
+    Command* command =
+        program.add_subcommand("export", "Write a trace, or what a cache is asked during its replay, for other tools");
     command->add_option("TRACE", o->trace, "trace file")->required();
     command
         ->add_option("--format", o->format,
                      "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv, or accel-sim (warp instructions)")
+        ->choices("format", format_names())
         ->required();
     command
         ->add_option("-o,--output", o->output,
                      "file to write, or - for stdout; accel-sim: FILE.traceg, FILE.traceg.xz, -, or a folder")
+        ->type_name("FILE")
         ->required();
     command->add_option("--launch", o->launch,
                         "which launch of the trace, from 0; each begins with empty caches. Default: the first, with a "
                         "warning where there are more");
-    command->add_option("--gpu", o->gpu.names, "GPU preset or FILE.toml (see 'raycache list gpus')")->expected(1);
+    o->gpu.add_names(*command, "GPU preset or FILE.toml (see 'raycache list gpus')")->count(1);
     o->gpu.add_changes(*command);
+    command->group("GPU");
     command->add_option("--level", o->level, "l1, l2 or l3: of one SM, or the last, which all SMs share")
-        ->capture_default_str();
+        ->choices("level", {"l1", "l2", "l3"});
     command->add_option("--sm", o->sm, "the SM whose cache is meant, from 0");
     command->add_option("--l1", o->l1, "which of its L1s, where an SM has several");
-    command
-        ->add_option("--warps-per-cta", o->traceg.warps_per_cta,
-                     "accel-sim: consecutive warps that form a CTA, 1 to 32")
-        ->check(CLI::Range(1u, 32u))
-        ->capture_default_str();
-    command
-        ->add_option("--binary-version", o->traceg.binary_version,
-                     "accel-sim: 61 Pascal, 70 Volta, 75 Turing, 80 or 86 Ampere")
-        ->check(CLI::IsMember({61, 70, 75, 80, 86}))
-        ->capture_default_str();
-    command->footer(
-        "Examples:\n"
-        "  raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv\n"
-        "  raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din\n"
-        "  raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64\n"
-        "  raycache export mj.rct --launch 1 --gpu h100 --set l1.ways=8 --sm 0 --format dinero -o - | less\n"
-        "  raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace\n"
-        "  raycache export mj.rct --format accel-sim -o mj.traceg.xz");
-    command->callback([o] { run(*o); });
+    command->group("Accel-Sim");
+    command->add_option("--warps-per-cta", o->traceg.warps_per_cta, "consecutive warps that form a CTA")
+        ->range(std::uint64_t{1}, std::uint64_t{32});
+    command->add_option("--binary-version", o->traceg.binary_version, "61 Pascal, 70 Volta, 75 Turing, 80 or 86 Ampere")
+        ->choices("binary version", {"61", "70", "75", "80", "86"});
+    command->group("");
+    command->examples(
+        {"raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv",
+         "raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din",
+         "raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64",
+         "raycache export mj.rct --launch 1 --gpu h100 --set l1.ways=8 --sm 0 --format dinero -o - | less",
+         "raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace",
+         "raycache export mj.rct --format accel-sim -o mj.traceg.xz"});
+    command->plan([o] { return plan(o); });
 }
 
 }  // namespace raycache::tools

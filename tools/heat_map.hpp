@@ -35,9 +35,9 @@ std::vector<std::string> heat_map_files(const std::string& exr);
 /// Throws UsageError unless write_heat_maps() can write to a file of this name.
 void check_heat_map_name(const std::string& exr);
 
-/// Writes FILE.exr with the layers "base" and "other", each with the channels "DRAM bytes", "L1 visit miss rate" and "active
-/// lanes", and FILE.png: a row of three panels for each trace and a row of
-/// their differences, with common scales, under a title.
+/// Writes FILE.exr with the layers "base" and "other", each with the channels "DRAM bytes", "L1 visit miss rate" and
+/// "active lanes", and FILE.png: a row of three panels for each trace and a row of their differences, with common
+/// scales, under a title.
 void write_heat_maps(const std::string& exr, const std::string& title, const HeatMap& base, const HeatMap& other,
                      Deliveries&);
 

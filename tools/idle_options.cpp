@@ -15,16 +15,16 @@ using Case = tracer::CaptureSettings;
 using tracer::Parameter;
 
 struct Context {
-    const CLI::App& command;
+    const Command& command;
     const CaseUse& use;
 
     bool given(const char* name) const {
-        const CLI::Option* option = command.get_option_no_throw(name);
-        return option && option->count() != 0;
+        const Option* option = command.find_option(name);
+        return option && option->given();
     }
     std::string value(const char* name) const {
-        const CLI::Option* option = command.get_option_no_throw(name);
-        return option && !option->results().empty() ? option->results().back() : "";
+        const Option* option = command.find_option(name);
+        return option && option->given() ? option->words().back() : "";
     }
 };
 
@@ -155,7 +155,7 @@ const std::vector<OptionRule>& rules() {
 
 }  // namespace
 
-std::vector<std::string> idle_options(const CLI::App& command, std::span<const tracer::CaptureSettings> cases,
+std::vector<std::string> idle_options(const Command& command, std::span<const tracer::CaptureSettings> cases,
                                       const CaseUse& use) {
     const Context context{command, use};
     std::vector<std::string> lines;
@@ -176,38 +176,26 @@ std::vector<std::string> idle_options(const CLI::App& command, std::span<const t
     return lines;
 }
 
-std::vector<std::string> idle_besides(const CLI::App& command, const std::vector<std::string>& read,
+std::vector<std::string> idle_besides(const Command& command, const std::vector<std::string>& read,
                                       const std::string& reason) {
     std::vector<std::string> lines;
-    for (const CLI::Option* option : command.get_options()) {
-        const bool is_read =
-            std::any_of(read.begin(), read.end(), [&](const std::string& name) { return option->check_name(name); });
-        if (option->count() == 0 || option->get_positional() || is_read || option == command.get_help_ptr()) continue;
-        lines.push_back(fmt::format("{} has no effect: {}", option->get_name(), reason));
+    for (const auto& option : command.options()) {
+        const bool is_read = std::find(read.begin(), read.end(), option->name()) != read.end();
+        if (!option->given() || option->is_positional() || is_read) continue;
+        lines.push_back(fmt::format("{} has no effect: {}", option->name(), reason));
     }
     return lines;
 }
 
-std::vector<std::string> idle_on_traces(const CLI::App& command) {
-    CLI::App capture;  // to know their names
-    SceneOptions scene;
-    SamplingOptions sampling;
-    scene.add(capture, false);
-    sampling.add_picture(capture);
-    sampling.add_strategy(capture);
-    sampling.add_launches(capture);
-    sampling.add_execution(capture);
-    std::vector<std::string> names{"--strategy", "--sequence", "--spp"}, lines;
-    for (const CLI::Option* option : capture.get_options()) names.push_back(option->get_name());
-    for (const std::string& name : names) {
-        const CLI::Option* option = command.get_option_no_throw(name);
-        if (option && option->count() != 0 && option != command.get_help_ptr())
-            lines.push_back(fmt::format("{} has no effect: the trace files say it", name));
-    }
+std::vector<std::string> idle_on_traces(const Command& command) {
+    std::vector<std::string> lines;
+    for (const auto& option : command.options())
+        if (option->given() && option->is_about_scene())
+            lines.push_back(fmt::format("{} has no effect: the trace files say it", option->name()));
     return lines;
 }
 
-void warn_of_settings(const CLI::App& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use) {
+void warn_of_settings(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use) {
     std::vector<std::string> lines = idle_options(command, cases, use);
     for (const Case& c : cases)
         for (const std::string& line : settings_warnings(c))

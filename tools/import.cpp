@@ -1,11 +1,10 @@
 // raycache import: a trace of another tool -> trace file.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/outputs.hpp"
+#include "tools/program.hpp"
 #include "tools/progress.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/error.hpp"
@@ -48,18 +47,16 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_import(CLI::App& app) {
+void add_import(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = program.add_subcommand(
         "import", "Make a trace of an Accel-Sim (NVBit) trace's global loads, or of an RTWARP01 trace");
     command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz; or an RTWARP01 trace, plain or zstd")
         ->required();
-    command->add_option("-o,--output", o->output, "trace to write (.rct), or - for stdout")->required();
+    command->add_option("-o,--output", o->output, "trace to write, or - for stdout")->required()->type_name("FILE.rct");
     command->add_flag("--fuse", o->fuse, "one access for loads of a warp that read on, lane by lane: a split object");
-    command->footer(
-        "Examples:\n"
-        "  raycache import kernel-1.traceg.xz -o kernel.rct\n"
-        "  raycache import mj-trace/kernel-1.traceg --fuse -o mj.rct");
+    command->examples({"raycache import kernel-1.traceg.xz -o kernel.rct",
+                       "raycache import mj-trace/kernel-1.traceg --fuse -o mj.rct"});
     command->callback([o] { run(*o); });
 }
 

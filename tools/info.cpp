@@ -8,10 +8,9 @@
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/json_output.hpp"
+#include "tools/program.hpp"
 #include "traces/printable.hpp"
 #include "traces/reader.hpp"
-
-#include <CLI/CLI.hpp>
 
 namespace raycache::tools {
 namespace {
@@ -106,12 +105,12 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_info(CLI::App& app) {
+void add_info(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("info", "Show a trace's provenance, counts and bytes per ray");
+    Command* command = program.add_subcommand("info", "Show a trace's provenance, counts and bytes per ray");
     command->add_option("TRACE", o->path, "trace file")->required();
     o->json.add(*command);
-    command->footer("Examples:\n  raycache info mj.rct\n  raycache info mj.rct --json");
+    command->examples({"raycache info mj.rct", "raycache info mj.rct --json"});
     command->callback([o] { run(*o); });
 }
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "cachesim/report/json_key.hpp"
+#include "tools/command.hpp"
 #include "tools/command_view.hpp"
 #include "traces/error.hpp"
 
@@ -99,7 +99,7 @@ Json gpu_json(const cachesim::Gpu& gpu) {
 
 }  // namespace
 
-void JsonOption::add(CLI::App& command) {
+void JsonOption::add(Command& command) {
     command_ = &command;
     command.add_flag("--json", asked_, "print JSON (docs/json.md)");
 }
@@ -138,7 +138,7 @@ Json settings_json(const traces::Header& header, const std::string& file) {
              {"spp", p.spp},
              {"parameters", p.parameters}};
     // "K=2.5 s=2 mu=0.3125": each number also under a key of its own.
-    for (const std::string& part : CLI::detail::split(p.parameters, ' ')) {
+    for (const std::string& part : split(p.parameters, ' ')) {
         const std::size_t sign = part.find('=');
         if (sign == std::string::npos || sign == 0) continue;
         const Json value = value_of(part.substr(sign + 1), false);

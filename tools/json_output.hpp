@@ -10,11 +10,9 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "traces/header.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace raycache::tools {
+
+class Command;
 
 /// Raised when a key of any document is renamed, removed, or changes its meaning; new keys leave it as it is.
 inline constexpr int json_schema_version = 1;
@@ -28,7 +26,7 @@ struct JsonSubject {
 /// The flag --json of a command.
 class JsonOption {
 public:
-    void add(CLI::App& command);
+    void add(Command&);
     explicit operator bool() const { return asked_; }
     /// `report`, a JSON object, behind the envelope: schema_version, program, version, command, command_line, settings,
     /// and gpus and traces where the subject has any. Independent of --threads and of where results are written.
@@ -36,7 +34,7 @@ public:
     std::string document(const std::string& report, const JsonSubject& = {}) const;
 
 private:
-    const CLI::App* command_ = nullptr;
+    const Command* command_ = nullptr;
     bool asked_ = false;
 };
 

@@ -1,7 +1,6 @@
 // raycache list: every name that another subcommand takes.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "tools/console.hpp"
 #include "tools/gpu_details.hpp"
 #include "tools/json_output.hpp"
+#include "tools/program.hpp"
 #include "tools/width_option.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
@@ -67,12 +67,7 @@ void run(const Options& o) {
         return;
     }
     std::vector<Topic> topics = all_topics();
-    if (!o.topic.empty()) {
-        std::string valid;
-        for (const Topic& t : topics) valid += (valid.empty() ? "" : ", ") + t.name;
-        std::erase_if(topics, [&](const Topic& t) { return t.name != o.topic; });
-        if (topics.empty()) throw UsageError(fmt::format("unknown topic '{}'; expected one of: {}", o.topic, valid));
-    }
+    if (!o.topic.empty()) std::erase_if(topics, [&](const Topic& t) { return t.name != o.topic; });
     nlohmann::ordered_json json;
     std::string text;
     for (const Topic& topic : topics) {
@@ -91,18 +86,21 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_list(CLI::App& app) {
+void add_list(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = program.add_subcommand(
         "list", "List strategies, sequences, GPUs, layouts, thread maps, ray orders, built-in scenes");
-    command->add_option("TOPIC", o->topic,
-                        "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all");
+    std::vector<std::string> topics;
+    for (const Topic& topic : all_topics()) topics.push_back(topic.name);
+    command
+        ->add_option("TOPIC", o->topic,
+                     "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all")
+        ->choices("topic", topics);
     o->json.add(*command);
     o->width.add(*command);
     command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
-    command->footer(
-        "Examples:\n  raycache list\n  raycache list gpus --json\n  raycache list gpus --details\n"
-        "  raycache list gpus --details --json");
+    command->examples({"raycache list", "raycache list gpus --json", "raycache list gpus --details",
+                       "raycache list gpus --details --json"});
     command->callback([o] { run(*o); });
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/program.hpp"
 #include "traces/error.hpp"
 #include "traces/memory_budget.hpp"
 
@@ -28,18 +29,19 @@ std::uint64_t parse_size(const std::string& text, const std::string& option) {
         option, text));
 }
 
-void add_memory_limit(CLI::App& app) {
-    const auto reads = [](CLI::App* command) {
-        const std::string& name = command->get_name();
-        return name != "list" && name != "completion" && name != "samples";
-    };
-    for (CLI::App* command : app.get_subcommands(reads))
+void add_memory_limit(Program& program) {
+    for (const auto& command : program.commands()) {
+        const std::string& name = command->name();
+        if (name == "list" || name == "completion" || name == "samples") continue;
+        const auto limit = std::make_shared<std::string>();
         command
-            ->add_option_function<std::string>(
-                "--memory-limit", [](const std::string& text) { set_memory_limit(parse_size(text, "--memory-limit")); },
-                "most memory that one input (a trace, a scene with all it refers to) or picture may take, such as 4GiB "
-                "or 512MiB; default: a quarter of the machine's")
+            ->add_option(
+                "--memory-limit", *limit,
+                "most memory that one input (a trace, a scene with all it refers to) or picture may take, such "
+                "as 4GiB or 512MiB; default: a quarter of the machine's")
+            ->check([limit](std::string& text) { set_memory_limit(parse_size(text, "--memory-limit")); })
             ->type_name("SIZE");
+    }
 }
 
 }  // namespace raycache::tools

@@ -1,13 +1,13 @@
 // Options that several subcommands share, declared once: names, help texts, checks, and the settings they make.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/command.hpp"
 #include "tools/outputs.hpp"
 #include "tools/progress.hpp"
 #include "tracer/capture.hpp"
@@ -15,14 +15,15 @@
 
 namespace raycache::tools {
 
-/// Which scene, seen how. `add_scene_name` says whether the scene is a positional argument.
+/// Which scene, seen how.
 struct SceneOptions {
     std::string source, camera, eye, look_at, sky = "auto";
     std::uint64_t detail = 0;
     float fov = 0;
     bool spatial_splits = false;
 
-    void add(CLI::App&, bool positional);
+    void add_name(Command&);  ///< SCENE, or --scene: required
+    void add_view(Command&);  ///< everything else
     /// Loads the scene and builds everything on it; warnings go to stderr. Throws UsageError if one of `outputs`, which
     /// the caller is going to write, is a file that the scene is read from.
     std::unique_ptr<tracer::PreparedScene> prepare(const FileNames& outputs, Progress&) const;
@@ -38,17 +39,17 @@ struct SamplingOptions {
     std::optional<std::uint32_t> bounces_diffuse, bounces_transmission;
     std::string lights = "auto";
     bool russian_roulette = false;
+    unsigned interleave = 8;
+    std::uint64_t seed = 1, trace_samples = 8;
     double cycles_multiplier = 1;
     std::uint64_t cycles_min_samples = 0;
     std::string cycles_noise_threshold = "0.01";
-    unsigned interleave = 8;
-    std::uint64_t seed = 1, trace_samples = 8;
     std::string execution = "megakernel", order = "none";
 
-    void add_picture(CLI::App&);    ///< --resolution, and what paths() is made of
-    void add_strategy(CLI::App&);   ///< --k --s --mu --cycles-… --interleave --seed
-    void add_launches(CLI::App&);   ///< --trace-samples --thread-map
-    void add_execution(CLI::App&);  ///< --execution --order
+    void add_picture(Command&);    ///< --resolution, and what paths() is made of
+    void add_strategy(Command&);   ///< --k --s --mu --cycles-… --interleave --seed
+    void add_launches(Command&);   ///< --trace-samples --thread-map
+    void add_execution(Command&);  ///< --execution --order
 
     /// Throws UsageError for values out of range.
     tracer::PathSettings paths() const;
@@ -66,11 +67,24 @@ private:
 
 /// --threads, and the limit it sets for the life of the object this returns.
 struct ThreadOptions {
-    int threads = 0;
+    std::uint32_t threads = 0;  ///< 0: as many as there are cores
 
-    void add(CLI::App&);
+    void add(Command&);
     std::shared_ptr<void> apply() const;
 };
+
+/// A decorrelation of this name; with `execution` also NAME+wavefront and NAME+ORDER. For Option::check(); throws
+/// UsageError, with the closest name.
+void check_strategy_name(const std::string&, bool execution);
+std::vector<std::string> strategy_names();
+std::vector<std::string> sequence_names();
+
+/// --strategy, --sequence and --spp where there may be several. `execution`: see check_strategy_name().
+Option* add_strategies(Command&, std::vector<std::string>&, bool execution);
+Option* add_sequences(Command&, std::vector<std::string>&);
+Option* add_spps(Command&, std::vector<std::uint64_t>&, const std::string& help);
+/// --spp where there is one.
+Option* add_spp(Command&, std::uint64_t&, const std::string& help);
 
 /// What the strategy has to say about its settings, such as "mu 1.58 clamped to 1 …" (SamplingStrategy::warnings()).
 std::vector<std::string> settings_warnings(const tracer::CaptureSettings&);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
@@ -11,6 +12,7 @@
 #include "traces/error.hpp"
 
 namespace raycache::tools {
+
 namespace {
 
 std::vector<std::string> independent_strategies() {
@@ -22,34 +24,42 @@ std::vector<std::string> independent_strategies() {
 
 }  // namespace
 
-void QualityOptions::add(CLI::App& app, bool require_gpu) {
-    scene.add(app, true);
-    app.add_option("--reference-spp", reference_spp, "samples per pixel of the reference")->capture_default_str();
-    app.add_option(
-           "--reference-strategy", reference_strategy,
-           "how the reference is sampled: random, or another that is unbiased and independent from pixel to pixel, "
-           "such as cranley-patterson, which needs fewer samples")
-        ->capture_default_str();
-    app.add_option("--reference", reference_file,
-                   "FILE.exr that keeps the reference; default: a file in the user's cache folder, found by scene and "
-                   "settings");
-    app.add_option("--clamp", clamp,
-                   "radiance that no channel of a sample exceeds, in pictures and reference alike: fireflies then do "
-                   "not decide; default: none");
-    app.add_option("--repeats", repeats, "pictures of each strategy, with seeds one after the other")
-        ->capture_default_str();
-    app.add_option("--gpu", gpu.names, "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
-        ->expected(1)
+void QualityOptions::add(Command& command, bool require_gpu) {
+    scene.add_name(command);
+    command.group("Reference");
+    command.add_option("--reference-spp", reference_spp, "samples per pixel of the reference")
+        ->range(std::uint64_t{2}, std::uint64_t{1} << 32);
+    command
+        .add_option("--reference-strategy", reference_strategy,
+                    "how the reference is sampled: random, or another that is unbiased and independent from pixel to "
+                    "pixel, such as cranley-patterson, which needs fewer samples")
+        ->choices("strategy", strategy_names());
+    command
+        .add_option("--reference", reference_file,
+                    "picture that keeps the reference; default: a file in the user's cache folder, found by scene and "
+                    "settings")
+        ->type_name("FILE.exr");
+    command.group("");
+    command.add_option("--clamp", clamp,
+                       "radiance that no channel of a sample exceeds, in pictures and reference alike: fireflies then "
+                       "do not decide; default: none");
+    command.add_option("--repeats", repeats, "pictures of each strategy, with seeds one after the other")
+        ->range(std::uint64_t{1}, std::uint64_t{1024});
+    command
+        .add_option("--baseline", baseline,
+                    "strategy that ratios refer to; default: cranley-patterson where it is compared")
+        ->choices("strategy", strategy_names());
+    json.add(command);
+    command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
+    threads.add(command);
+    gpu.add_names(command, "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")
+        ->count(1)
         ->required(require_gpu);
-    gpu.add_changes(app);
-    app.add_option("--baseline", baseline,
-                   "strategy that ratios refer to; default: cranley-patterson where it is compared");
-    sampling.add_launches(app);
-    sampling.add_picture(app);
-    sampling.add_strategy(app);
-    json.add(app);
-    app.add_flag("--csv", csv, "print CSV");
-    threads.add(app);
+    gpu.add_changes(command);
+    scene.add_view(command);
+    sampling.add_launches(command);
+    sampling.add_picture(command);
+    sampling.add_strategy(command);
 }
 
 std::string QualityOptions::baseline_of(const std::vector<std::string>& strategies) const {
@@ -58,12 +68,13 @@ std::string QualityOptions::baseline_of(const std::vector<std::string>& strategi
     return std::find(strategies.begin(), strategies.end(), usual) != strategies.end() ? usual : "";
 }
 
-QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest request, const FileNames& outputs,
+QualityReport QualityOptions::measure(const Command& command, QualityRequest request, const FileNames& outputs,
                                       Deliveries& deliveries, Progress& progress) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
-    const auto gpus = gpu.load(outputs);
-    gpu.check_timed(gpus);
-    if (!gpus.empty()) request.gpu = gpus.front();
+    if (!gpu.names.empty()) {
+        request.gpu = gpu.load_one(outputs, command.name());
+        gpu.check_timed({*request.gpu});
+    }
     request.repeats = repeats;
     request.clamp = clamp;
     check(request);
@@ -96,7 +107,7 @@ QualityReport QualityOptions::measure(const CLI::App& command, QualityRequest re
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";
-    result.subject.gpus = gpus;
+    if (request.gpu) result.subject.gpus = {*request.gpu};
     result.reference_spp = reference_spp;
     result.repeats = repeats;
     result.clamp = clamp;

@@ -24,11 +24,11 @@ struct QualityOptions {
     std::string reference_file, reference_strategy = "random";
 
     /// `require_gpu`: --gpu must be given; else it may be.
-    void add(CLI::App&, bool require_gpu);
+    void add(Command&, bool require_gpu);
     /// Fills in what the options of `command` say, checks it, loads the scene, finds the reference and measures.
     /// `outputs`: what the caller is going to write. A reference that cannot be kept where it was asked for is a failed
     /// delivery.
-    QualityReport measure(const CLI::App& command, QualityRequest request, const FileNames& outputs, Deliveries&,
+    QualityReport measure(const Command& command, QualityRequest request, const FileNames& outputs, Deliveries&,
                           Progress&) const;
     /// Of these strategies: the one asked for, else Cranley-Patterson where it is among them.
     std::string baseline_of(const std::vector<std::string>& strategies) const;

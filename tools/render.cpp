@@ -7,6 +7,7 @@
 #include "tools/exposure.hpp"
 #include "tools/idle_options.hpp"
 #include "tools/options.hpp"
+#include "tools/program.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
 
@@ -19,55 +20,58 @@ struct Options {
     ThreadOptions threads;
     std::string sequence = "sobol", decorrelation = "cranley-patterson", output;
     std::uint64_t spp = 64;
-    float exposure = 0;
-    std::optional<float> clamp;
+    std::optional<float> exposure, clamp;
 };
 
-void run(const Options& o, const CLI::App& command) {
-    tracer::check_image_name(o.output);
-    const Resolution size = parse_resolution(o.sampling.resolution);
+Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+    tracer::check_image_name(o->output);
+    const Resolution size = parse_resolution(o->sampling.resolution);
     tracer::CaptureSettings one;
     one.width = size.width;
     one.height = size.height;
-    one.paths = o.sampling.paths();
-    one.strategy = o.sampling.strategy(o.sequence, o.decorrelation, o.spp);
-    warn_of_settings(command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
-    const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o.clamp};
-    tracer::check_clamp(o.clamp);
-
-    check_outputs({o.output});
-    const auto limit = o.threads.apply();
-    const std::uint64_t paths = std::uint64_t{size.width} * size.height * o.spp;
-    Progress progress("render");
-    progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
-    const auto scene = o.scene.prepare({o.output}, progress);
-    const auto stage = progress.begin("render", paths, "paths");
-    const tracer::Image image = tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
-    tracer::write_image(o.output, image, command.count("--exposure") != 0 ? o.exposure : automatic_exposure(image));
+    one.paths = o->sampling.paths();
+    one.strategy = o->sampling.strategy(o->sequence, o->decorrelation, o->spp);
+    tracer::check_clamp(o->clamp);
+    const tracer::SamplingStrategy check(one.strategy, tracer::path_dimensions(one.paths.bounces));
+    return [o, command, one] {
+        warn_of_settings(*command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
+        const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o->clamp};
+        check_outputs({o->output});
+        const auto limit = o->threads.apply();
+        const std::uint64_t paths = std::uint64_t{settings.width} * settings.height * o->spp;
+        Progress progress("render");
+        progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
+        const auto scene = o->scene.prepare({o->output}, progress);
+        const auto stage = progress.begin("render", paths, "paths");
+        const tracer::Image image =
+            tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
+        tracer::write_image(o->output, image, o->exposure ? *o->exposure : automatic_exposure(image));
+    };
 }
 
 }  // namespace
 
-void add_render(CLI::App& app) {
+void add_render(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
-    o->scene.add(*command, true);
+    Command* command = program.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
+    o->scene.add_name(*command);
     command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")
-        ->required();
-    command->add_option("--spp", o->spp, "samples per pixel")->capture_default_str();
+        ->required()
+        ->type_name("FILE");
     command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
-        ->capture_default_str();
-    command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")->capture_default_str();
-    o->sampling.add_picture(*command);
-    o->sampling.add_strategy(*command);
+        ->choices("strategy", strategy_names());
+    command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")
+        ->choices("sequence", sequence_names());
+    add_spp(*command, o->spp, "samples per pixel");
     command->add_option("--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
     command->add_option("--clamp", o->clamp, "radiance that no channel of a sample exceeds; default: none");
     o->threads.add(*command);
-    command->footer(
-        "Examples:\n"
-        "  raycache render courtyard --spp 16 -o courtyard.png\n"
-        "  raycache render sponza.glb --camera gallery --resolution 1280x720 --spp 256 -o sponza.exr");
-    command->callback([o, command] { run(*o, *command); });
+    o->scene.add_view(*command);
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    command->examples({"raycache render courtyard --spp 16 -o courtyard.png",
+                       "raycache render sponza.glb --camera gallery --resolution 1280x720 --spp 256 -o sponza.exr"});
+    command->plan([o, command] { return plan(o, command); });
 }
 
 }  // namespace raycache::tools

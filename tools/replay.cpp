@@ -1,6 +1,8 @@
 // raycache replay: one trace through one or more GPUs.
 #include "tools/commands.hpp"
 #include "tools/options.hpp"
+#include "tools/program.hpp"
+#include "tools/replay_job.hpp"
 #include "tools/report_options.hpp"
 
 namespace raycache::tools {
@@ -12,30 +14,31 @@ struct Options {
     ThreadOptions threads;
 };
 
-void run(const Options& o) {
-    const auto gpus = o.report.load_gpus({o.path});
-    const auto limit = o.threads.apply();
-    Progress progress("replay");
-    const TraceFiles files({o.path});
-    o.report.replay_and_publish(files.sources, {o.path}, gpus, progress);
+Job plan(const std::shared_ptr<const Options>& o) {
+    const auto gpus = o->report.load_gpus({o->path});
+    return [o, gpus] {
+        check_outputs(o->report.outputs());
+        const auto limit = o->threads.apply();
+        Progress progress("replay");
+        const TraceFiles files({o->path});
+        o->report.replay_and_publish(files.sources, {o->path}, gpus, progress);
+    };
 }
 
 }  // namespace
 
-void add_replay(CLI::App& app) {
+void add_replay(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("replay", "Replay a trace through a GPU's caches");
+    Command* command = program.add_subcommand("replay", "Replay a trace through a GPU's caches");
     command->add_option("TRACE", o->path, "trace file")->required();
-    o->report.add(*command, false);
     o->threads.add(*command);
-    command->footer(
-        "Examples:\n"
-        "  raycache replay mj.rct --gpu gtx-980-ti\n"
-        "  raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu\n"
-        "  raycache replay mj.rct --gpu rtx-3070 --counters ncu --by bounce --csv");
-    command->callback([o] { run(*o); });
+    o->report.add(*command, false);
+    command->examples({"raycache replay mj.rct --gpu gtx-980-ti",
+                       "raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json",
+                       "raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed",
+                       "raycache replay mj.rct --gpu rtx-3070 --counters ncu",
+                       "raycache replay mj.rct --gpu rtx-3070 --counters ncu --by bounce --csv"});
+    command->plan([o] { return plan(o); });
 }
 
 }  // namespace raycache::tools

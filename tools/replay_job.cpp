@@ -133,7 +133,7 @@ Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<ca
     Predicted all;
     for (BothSeries& both :
          replay_with<BothSeries>(sources, gpus, progress,
-                                 [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
+                                 [](const cachesim::Gpu&gpu, const std::vector<traces::Region>&regions,
                                     std::uint32_t sample) { return BothReplays(gpu, regions, sample); })) {
         cachesim::Series& counted = all.traffic.emplace_back(both);
         cachesim::TimedSeries& timed = all.times.emplace_back();

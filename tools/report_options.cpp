@@ -6,6 +6,7 @@
 
 #include "cachesim/report/profiler.hpp"
 #include "tools/console.hpp"
+#include "tools/options.hpp"
 #include "tools/replay_job.hpp"
 #include "traces/error.hpp"
 
@@ -52,34 +53,38 @@ void publish(const Report& report, const JsonSubject& subject, const ReportOptio
 
 }  // namespace
 
-void ReportOptions::add(CLI::App& app, bool with_baseline) {
-    app.add_option("--gpu", gpus.names, "GPU preset or FILE.toml; may be repeated (see 'raycache list gpus')")
-        ->required()
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    gpus.add_changes(app);
-    app.add_flag("--timed", timed, "predict cycles, too: latencies, queues and bandwidths beside order");
-    app.add_option(
-           "--by", by,
-           "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, texel)")
-        ->capture_default_str();
+void ReportOptions::add(Command& command, bool with_baseline) {
+    gpus.add_names(command, "GPU preset or FILE.toml, or several (see 'raycache list gpus')")->required();
+    gpus.add_changes(command);
+    command.group("Report");
+    command.add_flag("--timed", timed, "predict cycles, too: latencies, queues and bandwidths beside order")
+        ->excludes({"--by", "--counters"});
+    command
+        .add_option("--by", by,
+                    "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, "
+                    "texel)")
+        ->choices("grouping", {"none", "bounce", "ray", "object"})
+        ->type_name("WHAT");
     if (with_baseline)
-        app.add_option("--baseline", baseline,
-                       "strategy that ratios refer to; default: cranley-patterson where it is compared");
-    json.add(app);
-    width.add(app);
-    app.add_flag("--csv", csv, "print CSV");
-    app.add_option("--counters", counters,
-                   "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
-        ->check(CLI::IsMember({"ncu"}));
-    app.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
+        command
+            .add_option("--baseline", baseline,
+                        "strategy that ratios refer to; default: cranley-patterson where it is compared")
+            ->check([](std::string& name) { check_strategy_name(name, true); });
+    json.add(command);
+    width.add(command);
+    command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
+    command
+        .add_option("--counters", counters,
+                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
+        ->choices("set of counters", {"ncu"});
+    command.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
+    command.group("");
 }
 
 std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) const {
     check();
     refuse_overwriting(inputs, outputs());
     std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
-    check_outputs(outputs());
     if (timed) gpus.check_timed(loaded);
     for (const cachesim::Gpu& gpu : loaded)
         if (!counters.empty() && gpu.levels.size() != 2)

@@ -1,7 +1,6 @@
 // Options of a table over GPUs: how it is cut, in which format it is printed, where it is saved.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -11,8 +10,8 @@
 #include "tools/json_output.hpp"
 #include "tools/launch_source.hpp"
 #include "tools/outputs.hpp"
-#include "tools/width_option.hpp"
 #include "tools/progress.hpp"
+#include "tools/width_option.hpp"
 
 namespace raycache::tools {
 
@@ -24,7 +23,7 @@ struct ReportOptions {
     WidthOption width;
     bool csv = false;
 
-    void add(CLI::App&, bool with_baseline);
+    void add(Command&, bool with_baseline);
 
     /// Refuses what cannot be printed together, GPUs that cannot be asked so, and inputs that replay_and_publish()
     /// would overwrite: all before anything takes time. `inputs`: files that are read beside those of the GPUs.

@@ -1,7 +1,6 @@
 // raycache samples: the points that all pixels together take, their holes and density, and the tables about them.
 #include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
@@ -9,6 +8,7 @@
 #include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/outputs.hpp"
+#include "tools/program.hpp"
 #include "tools/progress.hpp"
 #include "tools/samples_picture.hpp"
 #include "tools/samples_tables.hpp"
@@ -64,26 +64,11 @@ void write_figure2(const Options& o) {
                                              {"cranley-patterson", &rotated}}));
 }
 
-void run(const Options& o, const CLI::App& command) {
+void run(const Options& o, const Command& command) {
+    check_outputs({o.csv, o.picture, o.figure2});
     const auto limit = o.threads.apply();
     Progress progress("samples");
     const auto stage = progress.begin("points");
-    if (!o.table.empty()) {
-        if (!o.csv.empty() || !o.picture.empty() || !o.figure2.empty())
-            throw UsageError("--table with --csv, --picture or --figure2; expected --table NAME [--json] alone");
-        const std::vector<std::string> read{"--table", "--json", "--threads"};
-        for (const std::string& line : idle_besides(command, read, "a table has settings of its own")) warn(line);
-        const SamplesTable table = make_samples_table(o.table);
-        print(o.json ? o.json.document(table.json()) : table.text());
-        return;
-    }
-    refuse_stdout("--csv", o.csv);
-    check_picture_name("--picture", o.picture);
-    check_picture_name("--figure2", o.figure2);
-    if (!o.figure2.empty() && o.spp > tracer::max_star_discrepancy_points)
-        throw UsageError(
-            fmt::format("--figure2 with --spp {}; expected at most {}", o.spp, tracer::max_star_discrepancy_points));
-    check_outputs({o.csv, o.picture, o.figure2});
     const SampleUnion samples = make(o, o.strategy, "");
     tracer::CaptureSettings one;
     one.strategy = samples.strategy;
@@ -101,23 +86,40 @@ void run(const Options& o, const CLI::App& command) {
     deliveries.finish();
 }
 
+void run_table(const Options& o, const Command& command) {
+    const std::vector<std::string> read{"--table", "--json", "--threads"};
+    for (const std::string& line : idle_besides(command, read, "a table has settings of its own")) warn(line);
+    const auto limit = o.threads.apply();
+    Progress progress("samples");
+    const auto stage = progress.begin("points");
+    const SamplesTable table = make_samples_table(o.table);
+    print(o.json ? o.json.document(table.json()) : table.text());
+}
+
+Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+    if (!o->table.empty()) return [o, command] { run_table(*o, *command); };
+    refuse_stdout("--csv", o->csv);
+    check_picture_name("--picture", o->picture);
+    check_picture_name("--figure2", o->figure2);
+    if (!o->figure2.empty() && o->spp > tracer::max_star_discrepancy_points)
+        throw UsageError(
+            fmt::format("--figure2 with --spp {}; expected at most {}", o->spp, tracer::max_star_discrepancy_points));
+    return [o, command] { run(*o, *command); };
+}
+
 }  // namespace
 
-void add_samples(CLI::App& app) {
+void add_samples(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = program.add_subcommand(
         "samples", "Show the points of all pixels in two dimensions of a strategy: holes, density, picture");
     command->add_option("--sequence", o->sequence, "low-discrepancy sequence (see 'raycache list sequences')")
-        ->capture_default_str();
+        ->choices("sequence", sequence_names());
     command->add_option("--strategy", o->strategy, "decorrelation (see 'raycache list strategies')")
-        ->capture_default_str();
-    command->add_option("--spp", o->spp, "N, points of one pixel")->capture_default_str();
-    command->add_option("--copies", o->copies, "how many pixels")->capture_default_str();
-    command->add_option("--dimensions", o->dimensions, "A,B: which two dimensions")
-        ->delimiter(',')
-        ->expected(2)
-        ->default_str("0,1");
-    o->sampling.add_strategy(*command);
+        ->choices("strategy", strategy_names());
+    add_spp(*command, o->spp, "N, points of one pixel");
+    command->add_option("--copies", o->copies, "how many pixels")->range(std::uint64_t{1}, std::uint64_t{1} << 32);
+    command->add_option("--dimensions", o->dimensions, "which two dimensions")->count(2)->type_name("A,B");
     command->add_option("--csv", o->csv, "write all points: copy, sample, x, y")->type_name("FILE");
     command->add_option("--picture", o->picture, "draw all points")->type_name("FILE.png");
     command
@@ -126,18 +128,18 @@ void add_samples(CLI::App& app) {
         ->type_name("FILE.png");
     command
         ->add_option("--table", o->table,
-                     "instead of one strategy, a table of docs/sampling.md: " + samples_table_names())
-        ->type_name("NAME");
+                     fmt::format("instead of one strategy, a table of docs/sampling.md: {}",
+                                 fmt::join(samples_table_names(), ", ")))
+        ->choices("table", samples_table_names())
+        ->excludes({"--csv", "--picture", "--figure2"});
     o->json.add(*command);
     o->threads.add(*command);
-    command->footer(
-        "Examples:\n"
-        "  raycache samples --sequence halton --strategy micro-jitter --spp 128 --copies 150 --k 1 --picture "
-        "holes.png\n"
-        "  raycache samples --sequence sobol --spp 1024 --dimensions 2,3 --mu 0.05 --csv points.csv --json\n"
-        "  raycache samples --figure2 figure2.png\n"
-        "  raycache samples --table bias");
-    command->callback([o, command] { run(*o, *command); });
+    o->sampling.add_strategy(*command);
+    command->examples(
+        {"raycache samples --sequence halton --strategy micro-jitter --spp 128 --copies 150 --k 1 --picture holes.png",
+         "raycache samples --sequence sobol --spp 1024 --dimensions 2,3 --mu 0.05 --csv points.csv --json",
+         "raycache samples --figure2 figure2.png", "raycache samples --table bias"});
+    command->plan([o, command] { return plan(o, command); });
 }
 
 }  // namespace raycache::tools

@@ -1,6 +1,7 @@
 #include "tools/samples_tables.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -298,16 +299,16 @@ std::string SamplesTable::json() const {
     return nlohmann::ordered_json{{"title", title}, {"rows", list}}.dump(2) + "\n";
 }
 
-std::string samples_table_names() {
-    std::string names;
-    for (const NamedTable& table : tables) names += (names.empty() ? "" : ", ") + std::string(table.name);
+std::vector<std::string> samples_table_names() {
+    std::vector<std::string> names;
+    for (const NamedTable& table : tables) names.emplace_back(table.name);
     return names;
 }
 
 SamplesTable make_samples_table(const std::string& name) {
     for (const NamedTable& table : tables)
         if (name == table.name) return table.make();
-    throw UsageError(fmt::format("--table '{}'; expected one of: {}", name, samples_table_names()));
+    throw UsageError(fmt::format("--table '{}'; expected one of: {}", name, fmt::join(samples_table_names(), ", ")));
 }
 
 }  // namespace raycache::tools

@@ -16,8 +16,8 @@ struct SamplesTable {
     std::string json() const;
 };
 
-/// "holes", "bias", …: comma separated, for messages and help.
-std::string samples_table_names();
+/// "holes", "bias", …
+std::vector<std::string> samples_table_names();
 
 /// Throws UsageError for an unknown name. Takes up to half a minute.
 SamplesTable make_samples_table(const std::string& name);

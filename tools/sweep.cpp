@@ -7,6 +7,7 @@
 #include "cachesim/report/table.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
+#include "tools/program.hpp"
 #include "tools/quality_options.hpp"
 #include "traces/error.hpp"
 
@@ -94,75 +95,69 @@ Recommendation recommend(const Options& o, const QualityReport& report) {
     return {advice_text(o, report, advice), advice, limits};
 }
 
-void run(const Options& o, const CLI::App& command) {
+Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+    tracer::DecorrelationSettings with_mu;
+    with_mu.mu = 1;
+    if (!tracer::find_decorrelation(o->swept).reads_parameter(tracer::Parameter::mu, with_mu))
+        throw UsageError(
+            fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o->swept));
+    for (const auto& [option, value] : {std::pair("--max-r8", o->max_r8), std::pair("--max-rmse", o->max_rmse)})
+        if (value <= 0) throw UsageError(fmt::format("{} {}; expected a number above 0", option, value));
     QualityRequest request;
     const auto add = [&](const std::string& strategy, std::optional<double> mu) {
         auto& settings =
-            request.cases.emplace_back(o.common.sampling.capture(o.common.scene, o.sequence, strategy, o.spp));
+            request.cases.emplace_back(o->common.sampling.capture(o->common.scene, o->sequence, strategy, o->spp));
         settings.strategy.parameters.mu = mu;
     };
-    tracer::DecorrelationSettings with_mu;
-    with_mu.mu = 1;
-    if (!tracer::find_decorrelation(o.swept).reads_parameter(tracer::Parameter::mu, with_mu))
-        throw UsageError(
-            fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o.swept));
-    for (const auto& [option, value] : {std::pair("--max-r8", o.max_r8), std::pair("--max-rmse", o.max_rmse)})
-        if (!std::isfinite(value) || value <= 0)
-            throw UsageError(fmt::format("{} {}; expected a number above 0", option, value));
-    if (o.mus.empty()) throw UsageError("no mu to sweep; expected at least one");
-    for (const double mu : o.mus) {
-        if (!(mu >= 0 && mu <= 1)) throw UsageError(fmt::format("--mu {}; expected numbers from 0 to 1", mu));
-        add(o.swept, mu);
-    }
-    std::vector<std::string> others = o.others;
+    for (const double mu : o->mus) add(o->swept, mu);
+    std::vector<std::string> others = o->others;
     if (std::find(others.begin(), others.end(), baseline) == others.end()) others.emplace_back(baseline);
     for (const std::string& strategy : others) add(strategy, std::nullopt);
     request.baseline = baseline;
-    if (!o.common.baseline.empty() && o.common.baseline != baseline)
+    if (!o->common.baseline.empty() && o->common.baseline != baseline)
         throw UsageError(
-            fmt::format("--baseline {}; expected {}, which a sweep is held against", o.common.baseline, baseline));
-    Deliveries deliveries;
-    Progress progress("sweep");
-    const QualityReport report = o.common.measure(command, std::move(request), {}, deliveries, progress);
-    const Recommendation advice = recommend(o, report);
-    deliveries.attempt([&] {
-        print(o.common.json ? o.common.json.document(to_json(report, &advice), report.subject)
-              : o.common.csv
-                  ? to_csv(report)
-                  : to_text(report) + "\n" +
-                        cachesim::break_lines("recommendation: " + advice.text + "\n", cachesim::text_width, 2));
-    });
-    deliveries.finish();
+            fmt::format("--baseline {}; expected {}, which a sweep is held against", o->common.baseline, baseline));
+    check(request);
+    return [o, command, request] {
+        Deliveries deliveries;
+        Progress progress("sweep");
+        const QualityReport report = o->common.measure(*command, request, {}, deliveries, progress);
+        const Recommendation advice = recommend(*o, report);
+        deliveries.attempt([&] {
+            print(o->common.json ? o->common.json.document(to_json(report, &advice), report.subject)
+                  : o->common.csv
+                      ? to_csv(report)
+                      : to_text(report) + "\n" +
+                            cachesim::break_lines("recommendation: " + advice.text + "\n", cachesim::text_width, 2));
+        });
+        deliveries.finish();
+    };
 }
 
 }  // namespace
 
-void add_sweep(CLI::App& app) {
+void add_sweep(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = program.add_subcommand(
         "sweep",
         "Which scrambling distance to set: predicted speed and picture quality against mu, with a recommendation");
     o->common.add(*command, true);
-    command->remove_option(command->get_option("--mu"));
-    const auto list = [&](const char* name, auto& values, const char* help) {
-        command->add_option(name, values, help)->delimiter(',')->allow_extra_args(false)->capture_default_str();
-    };
-    list("--mu", o->mus, "scrambling distances, 0 to 1, separated by commas");
-    list("--strategy", o->others, "other strategies to compare with, separated by commas");
-    command->add_option("--swept", o->swept, "the strategy whose mu is swept")->capture_default_str();
-    command->add_option("--sequence", o->sequence, "the sequence of all")->capture_default_str();
-    command->add_option("--spp", o->spp, "samples per pixel N")->capture_default_str();
+    command->remove_option("--mu");  // of one strategy; here it is a list
+    command->add_option("--mu", o->mus, "scrambling distances, separated by commas")->range(0.0, 1.0);
+    command->add_option("--swept", o->swept, "the strategy whose mu is swept")->choices("strategy", strategy_names());
+    command->add_option("--strategy", o->others, "other strategies to compare with, separated by commas")
+        ->choices("strategy", strategy_names());
+    command->add_option("--sequence", o->sequence, "the sequence of all")->choices("sequence", sequence_names());
+    add_spp(*command, o->spp, "samples per pixel N");
     command->add_option("--max-r8", o->max_r8, "structured-noise index that the recommendation accepts")
-        ->capture_default_str();
-    command->add_option("--max-rmse", o->max_rmse, "RMSE over cranley-patterson's that it accepts")
-        ->capture_default_str();
-    command->footer(
-        "Examples:\n"
-        "  raycache sweep courtyard --gpu gtx-980-ti --spp 64\n"
-        "  raycache sweep sponza.glb --gpu h100 --spp 256 --resolution 256x256 --mu 0,0.1,0.2,0.5,1 --csv\n"
-        "  raycache sweep cornell_box.glb --gpu gtx-980-ti --json > sweep.json && tools/plot_sweep sweep.json -o "
-        "sweep.png");
-    command->callback([o, command] { run(*o, *command); });
+        ->range(0.0, 1e6);
+    command->add_option("--max-rmse", o->max_rmse, "RMSE over cranley-patterson's that it accepts")->range(0.0, 1e6);
+    command->examples(
+        {"raycache sweep courtyard --gpu gtx-980-ti --spp 64",
+         "raycache sweep sponza.glb --gpu h100 --spp 256 --resolution 256x256 --mu 0,0.1,0.2,0.5,1 --csv",
+         "raycache sweep cornell_box.glb --gpu gtx-980-ti --json > sweep.json && tools/plot_sweep sweep.json -o "
+         "sweep.png"});
+    command->plan([o, command] { return plan(o, command); });
 }
 
 }  // namespace raycache::tools

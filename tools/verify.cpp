@@ -1,7 +1,6 @@
 // raycache verify: check every record of a trace; save what is whole of a damaged one.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "tools/costs.hpp"
 #include "tools/json_output.hpp"
 #include "tools/outputs.hpp"
+#include "tools/program.hpp"
 #include "tools/progress.hpp"
 #include "traces/printable.hpp"
 #include "traces/verify.hpp"
@@ -56,13 +56,14 @@ void run(const Options& o) {
 
 }  // namespace
 
-void add_verify(CLI::App& app) {
+void add_verify(Program& program) {
     auto o = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("verify", "Check every checksum and record of a trace");
+    Command* command = program.add_subcommand("verify", "Check every checksum and record of a trace");
     command->add_option("TRACE", o->path, "trace file")->required();
-    command->add_option("--recover", o->recovered, "write the launches that are whole to this new trace");
+    command->add_option("--recover", o->recovered, "write the launches that are whole to this new trace")
+        ->type_name("FILE.rct");
     o->json.add(*command);
-    command->footer("Examples:\n  raycache verify mj.rct\n  raycache verify damaged.rct --recover rest.rct");
+    command->examples({"raycache verify mj.rct", "raycache verify damaged.rct --recover rest.rct"});
     command->callback([o] { run(*o); });
 }
 

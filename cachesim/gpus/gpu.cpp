@@ -4,9 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "cachesim/gpus/gpu_file.hpp"
+#include "cachesim/gpus/gpu_name.hpp"
 #include "cachesim/gpus/presets.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 #include "traces/input_pipe.hpp"
 #include "traces/regular_file.hpp"
@@ -36,19 +39,36 @@ struct GpuText {
 
 GpuText find_text(const std::string& name_or_path) {
     if (is_gpu_file(name_or_path)) return {read_file(name_or_path), name_or_path};
-    std::vector<std::string> names;
-    for (const PresetText& preset : preset_texts()) {
-        if (preset.name == name_or_path) return {preset.toml, preset.name + ".toml"};
-        names.push_back(preset.name);
-    }
-    throw UsageError(fmt::format("GPU: expected one of {} or the path of a .toml file, found \"{}\"",
-                                 fmt::join(names, ", "), name_or_path));
+    const std::string name = find_gpu_name(name_or_path);
+    const auto& all = preset_texts();
+    const auto preset = std::find_if(all.begin(), all.end(), [&](const PresetText& p) { return p.name == name; });
+    return {preset->toml, preset->name + ".toml"};
+}
+
+/// Letters in lower case, and digits.
+std::string letters_and_digits(const std::string& text) {
+    std::string out;
+    for (const char c : text)
+        if (std::isalnum(static_cast<unsigned char>(c)))
+            out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return out;
 }
 
 }  // namespace
 
 bool is_gpu_file(const std::string& name_or_path) {
     return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml");
+}
+
+std::string find_gpu_name(const std::string& name) {
+    if (is_gpu_file(name)) return name;
+    std::vector<std::string> names;
+    for (const PresetText& preset : preset_texts()) {
+        if (letters_and_digits(preset.name) == letters_and_digits(name)) return preset.name;
+        names.push_back(preset.name);
+    }
+    throw UsageError(fmt::format("GPU: expected one of {} or the path of a .toml file, found \"{}\"{}",
+                                 fmt::join(names, ", "), name, did_you_mean(name, names)));
 }
 
 Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& changes) {

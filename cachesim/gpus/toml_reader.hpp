@@ -16,6 +16,7 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/gpus/toml_guard.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 #include "traces/printable.hpp"
 
@@ -196,8 +197,8 @@ public:
 
 private:
     [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
-        const std::string place = line == 0 ? " with --set" : fmt::format(":{}", line);  // 0: what change() gave
-        throw Error(fmt::format("{}{}: {}: {}", file_, place, key, message));
+        if (line == 0) throw UsageError(fmt::format("{} with --set: {}: {}", file_, key, message));  // from change()
+        throw Error(fmt::format("{}:{}: {}: {}", file_, line, key, message));
     }
 
     static std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
@@ -214,8 +215,9 @@ private:
             const std::string name(key.str());
             if (std::find(std::begin(known), std::end(known), name) == std::end(known))
                 fail(key.source().begin.line, printable_line(prefix + name),
-                     fmt::format("expected one of the keys {}, found an unknown one; correct or remove it",
-                                 fmt::join(known, ", ")));
+                     fmt::format("expected one of the keys {}, found an unknown one; correct or remove it{}",
+                                 fmt::join(known, ", "),
+                                 did_you_mean(name, std::vector<std::string>(std::begin(known), std::end(known)))));
         }
     }
 

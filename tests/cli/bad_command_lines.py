@@ -84,6 +84,24 @@ class BadCommandLines(ProgramTest):
             with self.subTest(camera):
                 self.refuses_option(CAPTURE, "--camera", camera, mentions=[camera])
 
+    def test_a_number_with_leading_zeros_is_decimal(self):
+        small = [word for option, value in SMALL.items() if option != "--spp" for word in (option, value)]
+        self.succeeds(*CAPTURE, *small, "--spp", "064")
+        info = self.succeeds("info", "trace.rct", "--json").text
+        self.assertIn("--spp 64 ", info)
+
+    def test_numbers_that_are_no_plain_decimals_are_refused(self):
+        for word in ("", " 16", "16 ", "+16", "0x10", "1e1", "1_6"):
+            for option in ("--spp", "--bounces", "--seed", "--trace-samples", "--threads", "--interleave"):
+                with self.subTest(f"{option} '{word}'"):
+                    self.refuses_option(CAPTURE, option, word, mentions=[option])
+
+    def test_what_is_misspelt_is_said_before_what_is_missing(self):
+        for command, meant in ((["compre", "courtyard"], "compare"), (["capture", "--bounce", "1"], "--bounces"),
+                               (["compare", "--strategy", "micro-jiter"], "micro-jitter"),
+                               (["capture", "courtyrd"], "courtyard"), (["replay", "--gpu", "3070"], "rtx-3070")):
+            self.assertTrue(self.refuses(2, *command).endswith(f"did you mean '{meant}'?"), command)
+
     def test_views_that_make_no_sense(self):
         self.refuses_option(CAPTURE, "--eye", "1,2,3")
         self.refuses_option(CAPTURE, "--look-at", "1,2,3")

@@ -13,6 +13,23 @@ COMPARE = ["compare", "--scene", *SCENE, *LAUNCHES, *GPU]
 
 
 class Reports(ProgramTest):
+    def test_the_scene_is_an_argument_and_a_gpu_goes_by_other_spellings(self):
+        tail = [*SCENE[1:], *LAUNCHES, "--strategy", "coherent,micro-jitter", "--csv"]
+        text = self.succeeds("compare", SCENE[0], *tail, "--gpu", "gtx-980-ti").text
+        self.assertEqual(self.succeeds("compare", "--scene", SCENE[0], *tail, "--gpu", "GTX_980_Ti").text, text)
+
+    def test_lists_of_values_make_a_row_for_every_gpu(self):
+        trace = self.capture()
+        rows = self.succeeds("replay", trace, "--gpu", "rtx-3070", "--l1-kib", "32,128", "--set", "sms=4,8",
+                             "--json").json["rows"]
+        self.assertEqual([row["gpu"] for row in rows],
+                         [f"rtx-3070 (sms={sms}, l1={kib} KiB)" for sms in (4, 8) for kib in (32, 128)])
+        sectors = [row["totals"]["l2_sectors"] for row in rows]
+        self.assertGreater(sectors[0], sectors[1])
+        by_ways = self.succeeds("replay", trace, "--gpu", "rtx-3070", "--set", "sms=4", "--set", "l1.ways=64",
+                                "--json").json["rows"][0]
+        self.assertEqual(by_ways["totals"], rows[0]["totals"])
+
     def test_the_groups_of_each_cut_add_up_to_the_whole(self):
         whole = {row["strategy"]: row["totals"] for row in self.succeeds(*COMPARE, "--json").json["rows"]}
         for by, expected in (("bounce", 3), ("ray", 3), ("object", 2)):

@@ -57,7 +57,7 @@ class Samples(ProgramTest):
             (["--strategy", "macro-jitter"], ["macro-jitter", "micro-jitter"]),
             (["--table", "nothing"], ["nothing", "holes"]),
             (["--table", "holes", "--csv", "x.csv"], ["--table"]),
-            (["--copies", "0"], ["--copies 0"]),
+            (["--copies", "0"], ["--copies '0'"]),
             (["--spp", "0"], ["0"]),
             (["--spp", "1000000", "--copies", "1000"], ["--copies 1000"]),
             (["--dimensions", "0,1024"], ["0,1024", "1023"]),

@@ -83,7 +83,7 @@ class Strategies(ProgramTest):
                                (["--strategy", "uniform-jitter", "--spp", "100"], "64 or 128"),
                                (["--sequence", "pmj02", "--spp", "65537"], "65536"),
                                (["--k", "discrepancy", "--spp", "100000"], "65536"),
-                               (["--k", "-1"], "K"), (["--k", "nan"], "K"), (["--k", "big"], "--k"),
+                               (["--k", "-1"], "--k"), (["--k", "nan"], "--k"), (["--k", "big"], "--k"),
                                (["--s", "0"], "s"), (["--s", "-1"], "--s"), (["--s", "some"], "--s"),
                                (["--mu", "-0.1"], "mu"), (["--mu", "nan"], "mu"), (["--mu", "wide"], "--mu"),
                                (["--sequence", "halton", "--strategy", "owen"], "sobol-owen-02")]:

@@ -72,10 +72,10 @@ class Timed(ProgramTest):
         few = self.succeeds("replay", trace, "--gpu", "v100", "--set", "l1.ways=2", "--json").json["rows"][0]
         many = self.succeeds("replay", trace, "--gpu", "v100", "--json").json["rows"][0]
         self.assertGreater(few["totals"]["l2_sectors"], many["totals"]["l2_sectors"])
-        for code, change, word in ((1, "l1.wys=2", "l1.wys"), (2, "l1.ways", "KEY=VALUE"), (1, "l1.ways=-1", "l1.ways"),
+        for code, change, word in ((2, "l1.wys=2", "l1.wys"), (2, "l1.ways", "KEY=VALUE"), (2, "l1.ways=-1", "l1.ways"),
                                    (2, "l9.ways=4", "l9"),
-                                   (1, "l1.policy=newest", "with --set: l1.policy: expected one of: fifo, lru"),
-                                   (2, "l1.policy='lru", "KEY=VALUE"), (1, "l1.allocate=never", "on_fill")):
+                                   (2, "l1.policy=newest", "with --set: l1.policy: expected one of: fifo, lru"),
+                                   (2, "l1.policy='lru", "KEY=VALUE"), (2, "l1.allocate=never", "on_fill")):
             self.refuses(code, "replay", trace, "--gpu", "v100", "--set", change, mentions=[word])
 
     def test_what_a_users_file_lacks_in_time_is_said_in_its_name(self):
@@ -85,7 +85,7 @@ class Timed(ProgramTest):
         self.succeeds("replay", trace, "--gpu", "mine.toml", "--timed")
         self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.accesses_in_flight=64",
                      mentions=["mine.toml: ", "(timing.accesses_in_flight=64)", "expected at most 64 for each"])
-        self.refuses(1, "explain", "--scene", "missing.glb", "--gpu", "mine.toml", "--set",
+        self.refuses(1, "explain", "courtyard", "--gpu", "mine.toml", "--set",
                      "timing.accesses_in_flight=64", mentions=["mine.toml: ", "expected at most 64 for each"])
         self.path("mine.toml").write_text(preset[:preset.index("[timing]")])
         self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", mentions=["mine.toml: ", "[timing]"])

@@ -1,12 +1,14 @@
 #include "tracer/sampling/decorrelation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "tracer/sampling/measures/star_discrepancy.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -137,10 +139,10 @@ const DecorrelationEntry& find_decorrelation(const std::string& name) {
     const auto& all = decorrelations();
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; });
     if (found == all.end()) {
-        std::string names;
-        for (const auto& entry : all) names += (names.empty() ? "" : ", ") + entry.name;
-        throw UsageError(
-            fmt::format("sampling: unknown decorrelation '{}', expected one of {}: choose one of them", name, names));
+        std::vector<std::string> names;
+        for (const auto& entry : all) names.push_back(entry.name);
+        throw UsageError(fmt::format("unknown strategy '{}'; expected one of: {}{}", name, fmt::join(names, ", "),
+                                     did_you_mean(name, names)));
     }
     return *found;
 }

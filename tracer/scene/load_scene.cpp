@@ -1,5 +1,6 @@
 // load_scene(): a file or a built-in scene, lit and seen as asked.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -11,6 +12,8 @@
 #include "tracer/scene/gltf_cameras.hpp"
 #include "tracer/scene/gltf_report.hpp"
 #include "tracer/scene/scene.hpp"
+#include "tracer/scene/scene_name.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 #include "traces/printable.hpp"
 
@@ -44,12 +47,7 @@ Scene build(const BuiltinScene& builtin, std::uint64_t detail) {
 }
 
 Scene load_file(const SceneRequest& request, const Warn& warn) {
-    std::error_code error;
-    if (!std::filesystem::exists(request.source, error))
-        throw UsageError(printable_line(
-            fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
-                        "the file does not exist; check the path",
-                        request.source, builtin_names())));
+    check_scene_name(request.source);
     if (request.detail != 0)
         throw UsageError(
             printable_line(fmt::format("scene {}: a detail of {} is given, but only built-in scenes ({}) have "
@@ -90,12 +88,12 @@ std::size_t find_camera(const Scene& scene, const std::string& wanted) {
     const char* end = wanted.data() + wanted.size();
     const auto parsed = std::from_chars(wanted.data(), end, index);
     if (parsed.ec == std::errc() && parsed.ptr == end && index < scene.cameras.size()) return index;
-    std::string valid;
-    for (const Camera& camera : scene.cameras) valid += (valid.empty() ? "" : ", ") + camera.name;
-    throw UsageError(
-        printable_line(fmt::format("camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
-                                   "found no such one; choose one of these",
-                                   wanted, scene.name, valid, scene.cameras.size() - 1)));
+    std::vector<std::string> names;
+    for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+    throw UsageError(printable_line(fmt::format(
+        "camera \"{}\": expected a name or index of a camera of {} ({}, or 0 to {}), "
+        "found no such one{}",
+        wanted, scene.name, fmt::join(names, ", "), scene.cameras.size() - 1, did_you_mean(wanted, names))));
 }
 
 std::string text(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
@@ -153,6 +151,18 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
 }
 
 }  // namespace
+
+void check_scene_name(const std::string& source) {
+    std::error_code error;
+    if (find_builtin_scene(source) || std::filesystem::exists(source, error)) return;
+    std::vector<std::string> names;
+    for (const BuiltinScene& builtin : builtin_scenes()) names.push_back(builtin.name);
+    const std::string meant = did_you_mean(source, names);
+    throw UsageError(printable_line(
+        fmt::format("scene \"{}\": expected a .glb or .gltf file or a built-in scene ({}), found neither: "
+                    "the file does not exist{}",
+                    source, builtin_names(), meant.empty() ? "; check the path" : meant)));
+}
 
 Scene load_scene(const SceneRequest& request, const Warn& warn) {
     const BuiltinScene* builtin = find_builtin_scene(request.source);

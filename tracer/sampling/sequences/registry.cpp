@@ -1,10 +1,12 @@
 // The list of sequences. To add one: write a file in this folder that defines `SequenceEntry NAME_entry()` in namespace
 // raycache::tracer, and add X(NAME) below.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "tracer/sampling/sequence.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 #define RAYCACHE_SEQUENCES(X) \
@@ -38,10 +40,10 @@ std::unique_ptr<Sequence> make_sequence(const std::string& name, std::uint64_t s
         sequence->name_ = name;
         return sequence;
     }
-    std::string names;
-    for (const auto& entry : all) names += (names.empty() ? "" : ", ") + entry.name;
-    throw UsageError(
-        fmt::format("sampling: unknown sequence '{}', expected one of {}: choose one of them", name, names));
+    std::vector<std::string> names;
+    for (const auto& entry : all) names.push_back(entry.name);
+    throw UsageError(fmt::format("unknown sequence '{}'; expected one of: {}{}", name, fmt::join(names, ", "),
+                                 did_you_mean(name, names)));
 }
 
 }  // namespace raycache::tracer
