@@ -10,8 +10,8 @@ namespace raycache {
 /// the other (optimal string alignment distance, Damerau 1964). Letters of either case are equal, '_' is '-'.
 std::size_t edit_distance(const std::string& a, const std::string& b);
 
-/// The one of `valid` that `found` is closest to, if that is close enough to be meant; else one that it is a part of, or
-/// that is a part of it; else empty.
+/// The one of `valid` that `found` is closest to, if that is close enough to be meant; else one that it is a part of,
+/// or that is a part of it; else empty.
 std::string closest_name(const std::string& found, const std::vector<std::string>& valid);
 
 /// "; did you mean 'X'?", or nothing.

@@ -59,7 +59,7 @@ struct Camera {
     Vec3 forward{0, 0, -1};   ///< unit
     Vec3 up{0, 1, 0};         ///< unit, orthogonal to forward
     float vertical_fov = 45;  ///< degrees, in (0, 180)
-    std::string problem{};     ///< why no picture can be taken with it; empty where one can
+    std::string problem{};    ///< why no picture can be taken with it; empty where one can
 };
 
 /// A directional light of finite size.
