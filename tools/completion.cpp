@@ -90,7 +90,7 @@ void run(const Options& o, const Program& program) {
     if (o.shell == "bash") return print(bash_completion(commands));
     if (o.shell == "zsh") return print(zsh_completion(commands));
     std::string text;  // for man pages: what there is to describe
-    for (const CommandView& command : commands) text += fmt::format("{}\t{}\n", command.name, command.description);
+    for (const CommandView& command : commands) text += fmt::format("{} {}\n", command.name, command.description);
     print(text);
 }
 

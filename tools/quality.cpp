@@ -49,7 +49,7 @@ Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
         deliveries.attempt([&] {
             print(o->common.json  ? o->common.json.document(to_json(report), report.subject)
                   : o->common.csv ? to_csv(report)
-                                  : to_text(report));
+                                  : to_text(report, o->common.width.columns()));
         });
         if (!o->output.empty()) write_quality_pictures(o->output, report, crop, deliveries);
         deliveries.finish();

@@ -50,6 +50,7 @@ void QualityOptions::add(Command& command, bool require_gpu) {
                     "strategy that ratios refer to; default: cranley-patterson where it is compared")
         ->choices("strategy", strategy_names());
     json.add(command);
+    width.add(command);
     command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
     threads.add(command);
     gpu.add_names(command, "GPU preset or FILE.toml whose time is predicted (see 'raycache list gpus')")

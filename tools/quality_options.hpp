@@ -8,6 +8,7 @@
 #include "tools/json_output.hpp"
 #include "tools/options.hpp"
 #include "tools/quality_report.hpp"
+#include "tools/width_option.hpp"
 
 namespace raycache::tools {
 
@@ -17,6 +18,7 @@ struct QualityOptions {
     GpuOptions gpu;  ///< at most one
     std::string baseline;
     JsonOption json;
+    WidthOption width;
     bool csv = false;
     ThreadOptions threads;
     std::uint64_t reference_spp = 1024, repeats = 1;

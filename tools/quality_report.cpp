@@ -102,7 +102,7 @@ void add_notes(QualityReport& report) {
     }
 }
 
-std::string to_text(const QualityReport& report) {
+std::string to_text(const QualityReport& report, std::size_t width) {
     using Align = cachesim::TextTable::Align;
     const auto any = [&](const auto& has) { return std::any_of(report.rows.begin(), report.rows.end(), has); };
     const bool pairs = any([](const QualityRow& r) { return !r.pairs.empty(); });
@@ -110,18 +110,21 @@ std::string to_text(const QualityReport& report) {
     const bool seeds = report.repeats > 1, timed = !report.gpu.empty(), ratios = !report.baseline.empty();
     cachesim::TextTable table;
     table.column("strategy", Align::left);
-    const auto columns = [&](std::initializer_list<const char*> titles) {
-        for (const char* title : titles) table.column(title, Align::right);
-    };
-    columns({"RMSE"});
-    if (ratios) columns({"ratio"});
-    columns({"robust", "R8", "z"});
-    if (seeds) columns({"z seeds"});
-    table.column("mean error %", Align::right, 2);
-    table.column("worst 8x8 %", Align::right, 3);
-    if (pairs) columns({"worst pair"});
-    if (timed) columns({"speed-up"});
-    if (equal_time) columns({"N equal time", "RMSE there"});
+    const auto column = [&](const char* title, unsigned rank = 0) { table.column(title, Align::right, rank); };
+    column("RMSE");
+    if (ratios) column("ratio");
+    column("robust", 2);
+    column("R8");
+    column("z", 4);
+    if (seeds) column("z seeds", 3);
+    column("mean error %", 5);
+    column("worst 8x8 %", 6);
+    if (pairs) column("worst pair", 1);
+    if (timed) column("speed-up");
+    if (equal_time) {
+        column("N equal time", 1);
+        column("RMSE there", 1);
+    }
     for (const QualityRow& row : report.rows) {
         const tracer::ErrorMeasures& e = row.errors;
         const double percent = 100 / e.reference_luminance;
@@ -174,7 +177,7 @@ std::string to_text(const QualityReport& report) {
     if (equal_time) text += "; N equal time: what fits into the baseline's time";
     text += "\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";
-    return table.text() + "\n" + cachesim::break_lines(text, cachesim::text_width, 2);
+    return table.text(width) + "\n" + cachesim::break_lines(text, cachesim::text_width, 2);
 }
 
 }  // namespace raycache::tools

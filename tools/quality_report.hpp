@@ -35,7 +35,7 @@ std::string label(const QualityRow&, const std::vector<QualityRow>& all);
 /// Adds a note for each row whose error the reference hides or a few pixels decide, and for Blender's defaults.
 void add_notes(QualityReport&);
 
-std::string to_text(const QualityReport&);
+std::string to_text(const QualityReport&, std::size_t width);
 /// `recommendation`: of a sweep; may be left out.
 std::string to_json(const QualityReport&, const Recommendation* recommendation = nullptr);
 std::string to_csv(const QualityReport&);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cachesim/report/table.hpp"
 #include "tracer/sampling/measures/largest_hole.hpp"
 #include "traces/error.hpp"
 
@@ -114,7 +115,8 @@ std::string to_text(const SampleUnion& u) {
                                    u.first_dimension, u.second_dimension, u.strategy.decorrelation,
                                    u.parameters.empty() ? "" : " ", u.parameters, u.base.size(), u.copies);
     const auto add = [&](const char* name, const std::string& value, const char* meaning) {
-        text += fmt::format("{:<28}  {:>9}  {}\n", name, value, meaning);
+        text +=
+            cachesim::break_lines(fmt::format("{:<28}  {:>9}  {}\n", name, value, meaning), cachesim::text_width, 41);
     };
     const auto number = [](std::optional<double> value) { return value ? fmt::format("{:.5g}", *value) : "-"; };
     add("mu", number(u.mu), "width of the window in which a point moves from pixel to pixel");

@@ -127,7 +127,7 @@ Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
             print(o->common.json ? o->common.json.document(to_json(report, &advice), report.subject)
                   : o->common.csv
                       ? to_csv(report)
-                      : to_text(report) + "\n" +
+                      : to_text(report, o->common.width.columns()) + "\n" +
                             cachesim::break_lines("recommendation: " + advice.text + "\n", cachesim::text_width, 2));
         });
         deliveries.finish();

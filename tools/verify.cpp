@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cachesim/report/table.hpp"
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
 #include "tools/costs.hpp"
@@ -51,7 +52,7 @@ void run(const Options& o) {
         text = fmt::format("{}: kept {} of {} launches ({} blocks)\n", printable_line(o.recovered), r.launches_kept,
                            r.launches_kept + r.launches_lost, r.blocks_kept);
     }
-    print(o.json ? o.json.document(json_text(out)) : text);
+    print(o.json ? o.json.document(json_text(out)) : cachesim::break_lines(text, cachesim::text_width, 2));
 }
 
 }  // namespace

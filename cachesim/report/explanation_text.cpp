@@ -136,11 +136,11 @@ std::string group_table(const Explanation& e, std::size_t width) {
         table.row(std::move(cells));
         if (factors && ratio.half_width) table.row(std::move(widths));
     }
-    return fmt::format(
-               "\nThe same for each group: DRAM bytes per ray of the group ({} and {}), the factors of\n"
-               "their ratio, and the group's share of the change in DRAM bytes per ray of the whole\n\n",
-               e.base.name, e.other.name) +
-           table.text(width);
+    return '\n' +
+           paragraph(fmt::format("The same for each group: DRAM bytes per ray of the group ({} and {}), the factors of "
+                                 "their ratio, and the group's share of the change in DRAM bytes per ray of the whole",
+                                 e.base.name, e.other.name)) +
+           '\n' + table.text(width);
 }
 
 std::string class_table(const Explanation& e, std::size_t width) {

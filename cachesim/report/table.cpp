@@ -122,7 +122,8 @@ std::string TextTable::lift_shared(std::vector<Column>& columns, Rows& rows) {
             ++c;
             continue;
         }
-        shared += fmt::format("{}{} {}", shared.empty() ? "" : ", ", columns[c].title, rows.front()[c]);
+        if (!rows.front()[c].empty())
+            shared += fmt::format("{}{} {}", shared.empty() ? "" : ", ", columns[c].title, rows.front()[c]);
         erase_column(columns, rows, c);
     }
     return shared;
@@ -147,7 +148,10 @@ std::string TextTable::shorten_names(std::vector<Column>& columns, Rows& rows) {
         for (auto& row : rows)
             if (!is_continuation(row)) row[c] = letter(row[c]);
         for (std::size_t i = 0; i < names.size(); ++i)
-            key += break_lines(fmt::format("{} {}: {}", columns[c].title, letters(i), names[i]), text_width, 4) + '\n';
+            key += break_lines(
+                       fmt::format("{} {}: {}", columns[c].title, letters(i), names[i].empty() ? "none" : names[i]),
+                       text_width, 4) +
+                   '\n';
     }
     return key;
 }

@@ -88,8 +88,9 @@ std::string traffic_table(const TimedReport& report, const Tables& tables, std::
     const bool l3 = report.traffic.has_l3(), ratios = !report.baseline.empty();
     for (const char* name : {"L2->L1", "L3->L2", "DRAM"}) {
         if (!l3 && std::string_view(name) == "L3->L2") continue;
-        table.column(fmt::format("{} B/ray", name), Align::right);
-        if (ratios) table.column("ratio", Align::right);
+        const unsigned rank = std::string_view(name) == "L3->L2" ? 1 : 0;
+        table.column(fmt::format("{} B/ray", name), Align::right, rank);
+        if (ratios) table.column("ratio", Align::right, rank);
     }
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.traffic.rows[i];
