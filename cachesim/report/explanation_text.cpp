@@ -137,9 +137,10 @@ std::string group_table(const Explanation& e, std::size_t width) {
         if (factors && ratio.half_width) table.row(std::move(widths));
     }
     return '\n' +
-           paragraph(fmt::format("The same for each group: DRAM bytes per ray of the group ({} and {}), the factors of "
-                                 "their ratio, and the group's share of the change in DRAM bytes per ray of the whole",
-                                 e.base.name, e.other.name)) +
+           paragraph(
+               fmt::format("The same for each group: DRAM bytes per ray of the group ({} and {}), the factors of their "
+                           "ratio, and the group's share of the change in DRAM bytes per ray of the whole",
+                           e.base.name, e.other.name)) +
            '\n' + table.text(width);
 }
 
@@ -259,7 +260,7 @@ std::string to_text(const Explanation& e, std::size_t width) {
         text += paragraph(sentence(e.speed_ups));
     text += paragraph(sentence(e));
     if (difference_of(e).dram_compulsory_share >= mostly_compulsory)
-        text += paragraph("note: " + compulsory_note(e.gpu), 2);
+        text += paragraph("note: " + compulsory_note(e.gpu) + '.', 2);
     return text;
 }
 

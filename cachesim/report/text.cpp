@@ -49,7 +49,9 @@ std::vector<Column> identity_columns(const Report& report) {
     std::vector<Column> columns;
     if (scenes.size() > 1) columns.push_back({"scene", Align::left, &Row::scene});
     columns.push_back({"strategy", Align::left, &Row::strategy});
-    if (parameters.size() > strategies.size()) columns.push_back({"parameters", Align::left, &Row::parameters});
+    if (parameters.size() > strategies.size())
+        columns.push_back({"parameters", Align::left,
+                           [](const Row& r) { return r.parameters.empty() ? std::string("-") : r.parameters; }});
     if (sequences.size() > 1) columns.push_back({"sequence", Align::left, &Row::sequence});
     if (thread_maps.size() > 1) columns.push_back({"threads", Align::left, &Row::thread_map});
     columns.push_back({"N", Align::right, [](const Row& r) { return fmt::format("{}", r.spp); }});

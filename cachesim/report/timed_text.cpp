@@ -48,7 +48,7 @@ public:
     }
     void add(TextTable& table, const TimedRow& row, const std::vector<std::string>& cells) const {
         std::vector<std::string> all{row.series.strategy};
-        if (with_parameters_) all.push_back(row.series.parameters);
+        if (with_parameters_) all.push_back(row.series.parameters.empty() ? "-" : row.series.parameters);
         all.push_back(fmt::format("{}", row.series.spp));
         all.push_back(row.series.gpu);
         all.insert(all.end(), cells.begin(), cells.end());
@@ -88,9 +88,10 @@ std::string traffic_table(const TimedReport& report, const Tables& tables, std::
     const bool l3 = report.traffic.has_l3(), ratios = !report.baseline.empty();
     for (const char* name : {"L2->L1", "L3->L2", "DRAM"}) {
         if (!l3 && std::string_view(name) == "L3->L2") continue;
-        const unsigned rank = std::string_view(name) == "L3->L2" ? 1 : 0;
-        table.column(fmt::format("{} B/ray", name), Align::right, rank);
-        if (ratios) table.column("ratio", Align::right, rank);
+        // Where there is no room for all, the bytes between L2 and L3 go first, then all but the ratios.
+        const bool middle = std::string_view(name) == "L3->L2";
+        table.column(fmt::format("{} B/ray", name), Align::right, ratios ? (middle ? 2 : 1) : 0);
+        if (ratios) table.column(fmt::format("{} ratio", name), Align::right);
     }
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.traffic.rows[i];

@@ -48,7 +48,7 @@ class ReportPage(ProgramTest):
         row["l2_bytes_ratio"] = estimate(0.69, 0.04)
         same = {key: row[key] for key in ("strategy", "sequence", "parameters", "spp")}
         base = {**same, "strategy": "cranley-patterson", "parameters": ""}
-        quality = {"baseline": "cranley-patterson", "width": 64, "height": 48,
+        quality = {"schema_version": 1, "baseline": "cranley-patterson", "width": 64, "height": 48,
                    "rows": [{**base, "r8": 1.25, "rmse_ratio": 1}, {**same, "r8": 3.5, "rmse_ratio": 0.9}]}
         self.path("q.json").write_text(json.dumps(quality))
         found = self.lead(self.page(report, "--quality", "q.json"))

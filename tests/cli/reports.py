@@ -156,8 +156,8 @@ class Reports(ProgramTest):
 
     def test_a_processor_of_three_levels_adds_columns_and_a_factor(self):
         command = ["compare", "--scene", *SCENE, *LAUNCHES, "--gpu", "xeon-8380"]
-        text = self.succeeds(*command).text
-        for title in ("L3 %", "L3->L2", "x L3"):
+        text = self.succeeds(*command, "--wide").text
+        for title in ("L3 %", "L3->L2", "L3 loc."):
             self.assertIn(title, text)
         self.assertNotIn("L3", self.succeeds(*COMPARE).text)
         for row in self.succeeds(*command, *GPU, "--json").json["rows"]:
@@ -172,7 +172,7 @@ class Reports(ProgramTest):
     def test_the_lines_of_the_table_are_as_wide_as_each_other_and_name_each_strategy(self):
         text = self.succeeds(*COMPARE).text
         for name in ("coherent", "cranley-patterson", "micro-jitter"):
-            self.assertRegex(text, rf"(?m)^{name} .* gtx-980-ti ")
+            self.assertRegex(text, rf"(?m)^{name} ")
         self.assertNotIn("nan", text)
 
     def test_save_writes_three_files_and_still_prints_the_table(self):
