@@ -1,5 +1,6 @@
 // raycache explain: why one trace is kinder to a GPU's caches than another.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "tools/commands.hpp"
 #include "tools/console.hpp"
@@ -69,6 +70,9 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
 }
 
 Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu) {
+    if (o->strategies.size() != 2)
+        throw UsageError(fmt::format("--strategy '{}': expected two names, BASE,OTHER, found {}",
+                                     fmt::join(o->strategies, ","), o->strategies.size()));
     std::vector<tracer::CaptureSettings> settings;
     for (const std::string& strategy : o->strategies)
         settings.push_back(o->sampling.capture(o->scene, o->sequence, strategy, o->spp));
@@ -122,7 +126,7 @@ void add_explain(Program& program) {
     o->inputs.add(*command, "two trace files: BASE and OTHER");
     o->gpu.add_names(*command, "GPU preset or FILE.toml (see 'raycache list gpus')")->required()->count(1);
     o->gpu.add_changes(*command);
-    add_strategies(*command, o->strategies, false)->count(2)->type_name("BASE,OTHER");
+    add_strategies(*command, o->strategies, false)->type_name("BASE,OTHER");
     command->add_option("--sequence", o->sequence, "with a scene: the sequence of both")
         ->choices("sequence", sequence_names())
         ->about_scene();
