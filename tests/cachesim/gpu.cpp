@@ -196,9 +196,10 @@ TEST_CASE("an unknown preset is bad use and lists the valid names") {
 }
 
 TEST_CASE("a file that cannot be read is named") {
-    CHECK_THROWS_WITH(load_gpu("/nowhere/x.toml"), Catch::StartsWith("/nowhere/x.toml: expected"));
+    CHECK_THROWS_WITH(load_gpu("/nowhere/x.toml"),
+                      Catch::StartsWith("/nowhere/x.toml: ") && Catch::Contains("expected a file"));
     CHECK_THROWS_WITH(load_gpu("/tmp/"), Catch::Contains("folder"));
-    CHECK_THROWS_WITH(load_gpu("/dev/zero"), Catch::Contains("longer"));
+    CHECK_THROWS_WITH(load_gpu("/dev/zero"), Catch::Contains("found a device"));
 }
 
 TEST_CASE("errors of a GPU file name file, line and key") {
@@ -211,8 +212,8 @@ TEST_CASE("errors of a GPU file name file, line and key") {
     CHECK_THAT(error("sms = 2\n", "sms = 4294967298\n"), StartsWith("f.toml:3: sms: "));
     CHECK_THAT(error("sms = 2\n", "sms = 5000\n"), StartsWith("f.toml:3: sms: expected 1 to 4096"));
     CHECK_THAT(error("sms = 2\n", "sms = 99999999999999999999\n"), StartsWith("f.toml:3: expected TOML"));
-    CHECK_THAT(error("sms = 2\n", "sms = 2 2\n"), StartsWith("f.toml:3: expected TOML"));
-    CHECK_THAT(error("sms = 2\n", "sms = \n"), StartsWith("f.toml:3: expected TOML"));
+    CHECK_THAT(error("sms = 2\n", "sms = 2 2\n"), StartsWith("f.toml:3: expected the end of the line"));
+    CHECK_THAT(error("sms = 2\n", "sms = \n"), StartsWith("f.toml:3: expected a number"));
     CHECK_THAT(error("sms = 2\n", ""), StartsWith("f.toml:1: sms: expected this key, found none"));
     CHECK_THAT(error("ways = 3\n", ""), StartsWith("f.toml:7: l1.ways: expected this key, found none"));
     CHECK_THAT(error("sms = 2\n", "sms = 2\nsmz = 2\n"), StartsWith("f.toml:4: smz: expected one of the keys"));

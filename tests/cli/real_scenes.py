@@ -24,7 +24,7 @@ class RealScenes(ProgramTest):
             with self.subTest(name):
                 self.warns("capture", SCENES / name, *SMALL, "-o", "trace.rct")
                 info = self.succeeds("info", "trace.rct", "--json").json
-                self.assertEqual(info["scene"], name)
+                self.assertEqual(info["traces"][0]["scene"], name)
                 self.assertEqual(self.succeeds("verify", "trace.rct", "--json").json["rays"], info["rays"])
                 row, = self.succeeds("replay", "trace.rct", "--gpu", "h100", "--json").json["rows"]
                 self.assertEqual(row["totals"]["lane_accesses"], info["lane_accesses"])
