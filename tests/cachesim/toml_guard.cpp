@@ -80,7 +80,7 @@ std::vector<std::string> hostile_texts() {
     for (const char* open : {"[", "{a=", "[[", "{"}) texts.push_back("a=" + repeated(open, 100000));
     texts.push_back(repeated("a.", 100000) + "a=1");
     texts.push_back(std::string("[").append(repeated("a.", 100000)).append("a]"));  // "[" + … warns with GCC 12
-    for (unsigned c = 0x80; c < 0x3000; ++c) {  // letters of many scripts as keys
+    for (unsigned c = 0x80; c < 0x3000; ++c) {                                      // letters of many scripts as keys
         const char two[] = {static_cast<char>(0xc0 | c >> 6), static_cast<char>(0x80 | (c & 63)), 0};
         const char three[] = {static_cast<char>(0xe0 | c >> 12), static_cast<char>(0x80 | (c >> 6 & 63)),
                               static_cast<char>(0x80 | (c & 63)), 0};
