@@ -58,7 +58,7 @@ TEST_CASE("the hash covers the file, its external buffers and its external textu
 
 TEST_CASE("a missing file, a folder and an empty file are errors that say so") {
     const TempFolder folder;
-    CHECK(mentions(error_of(folder.file("none.glb")), "expected a file, found none"));
+    CHECK(mentions(error_of(folder.file("none.glb")), "expected a file that can be read, found none"));
     CHECK(mentions(error_of(folder.file(".")), "found a folder"));
     CHECK(mentions(error_of("/dev/zero"), "found a device"));
     CHECK(mentions(error_of(folder.write("empty.glb", "")), "an empty file"));
