@@ -97,6 +97,25 @@ void check_together(const Command& command) {
                                      command.name()));
 }
 
+/// "--name=" as "--name" and an empty value, which CLI11 would take from the next word.
+std::vector<std::string> with_empty_values(const std::vector<std::string>& words) {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string& word = words[i];
+        if (word == "--") {
+            all.insert(all.end(), words.begin() + static_cast<std::ptrdiff_t>(i), words.end());
+            break;
+        }
+        if (word.size() > 3 && word.starts_with("--") && word.find('=') == word.size() - 1) {
+            all.push_back(word.substr(0, word.size() - 1));
+            all.emplace_back();
+        } else {
+            all.push_back(word);
+        }
+    }
+    return all;
+}
+
 std::vector<std::string> names_of(const std::vector<std::unique_ptr<Command>>& commands) {
     std::vector<std::string> names;
     for (const auto& command : commands)
@@ -148,13 +167,17 @@ Job Program::parse(const std::vector<std::string>& words) {
             if (declared[command.get()]->parsed()) chosen = command.get();
     };
     try {
-        std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
+        std::vector<std::string> reversed = with_empty_values(words);
+        std::reverse(reversed.begin(), reversed.end());  // as CLI11 wants them
         app.parse(std::move(reversed));
     } catch (const CLI::CallForHelp&) {
         find_chosen();
         return [text = chosen ? help(*chosen) : help()] { print(text); };
     } catch (const CLI::CallForVersion&) {
         return [] { print(program_name() + "\n"); };
+    } catch (const CLI::ArgumentMismatch& e) {
+        const std::string text = e.what();  // "NAME: 1 required …"
+        throw UsageError(text.substr(0, text.find(':')) + ": expected a value, found nothing");
     } catch (const CLI::ParseError& e) {
         throw UsageError(e.what());
     }

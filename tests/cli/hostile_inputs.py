@@ -85,7 +85,8 @@ class Memory(HostileTest):
         for size in ("", "0", "-1", "4 GiB", " 4GiB", "4GiB ", "4gb", "4G", "1e9", "0x10", "GiB", "1.5GiB", "0KiB",
                      "99999999999GiB", "16777216TiB", "+1GiB"):
             with self.subTest(size):
-                self.refuses(2, *self.render(name), f"--memory-limit={size}", mentions=["--memory-limit", "4GiB" if size else "SIZE"])
+                self.refuses(2, *self.render(name), f"--memory-limit={size}",
+                             mentions=["--memory-limit", "4GiB" if size else "SIZE"])
         for size in ("1000000000", "1GiB", "1024MiB", "1048576KiB", "1TiB"):
             self.warns(*self.render(name), "--memory-limit", size)
 
