@@ -149,8 +149,9 @@ class Reports(ProgramTest):
     def test_a_gpu_without_timing_is_refused_before_the_scene_is_touched(self):
         preset = (ROOT / "cachesim/gpus/v100.toml").read_text()
         self.path("untimed.toml").write_text(preset[:preset.index("[timing]")])
-        for command in (["compare", "--scene", "missing.glb", "--timed"], ["sweep", "missing.glb"],
-                        ["quality", "missing.glb"]):
+        self.path("broken.glb").write_bytes(b"glTF and then no scene")
+        for command in (["compare", "--scene", "broken.glb", "--timed"], ["sweep", "broken.glb"],
+                        ["quality", "broken.glb"]):
             with self.subTest(command[0]):
                 self.refuses(1, *command, "--gpu", "untimed.toml", mentions=["untimed.toml: ", "[timing]"])
 
@@ -208,11 +209,10 @@ class Reports(ProgramTest):
         self.assertIn("1.5", clamped.stderr)
         self.assertEqual(clamped.stdout, plain.stdout)
 
-    def test_mu_of_zero_is_the_coherent_strategy_and_cycles_is_a_mu(self):
+    def test_mu_of_zero_is_the_coherent_strategy(self):
         zero, = self.succeeds(*COMPARE, "--strategy", "micro-jitter", "--mu", "0", "--json").json["rows"]
         coherent, = self.succeeds(*COMPARE, "--strategy", "coherent", "--json").json["rows"]
         self.assertEqual(zero["totals"], coherent["totals"])
-        self.succeeds(*COMPARE, "--strategy", "micro-jitter", "--mu", "cycles")
 
     def test_progress_is_shown_on_a_terminal_only_and_wiped_at_the_end(self):
         ours, theirs = pty.openpty()

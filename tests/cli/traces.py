@@ -106,8 +106,8 @@ class Traces(ProgramTest):
                             self.capture("2.rct", "--seed", "2").read_bytes())
 
     def test_every_strategy_traces_the_same_sample_indices(self):
-        rows = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, "--spp", "1000", "--strategy",
-                             "coherent,cranley-patterson,micro-jitter", *GPU, "--json").json["rows"]
+        rows = self.warns("compare", "--scene", *SCENE, *LAUNCHES, "--spp", "1000", "--strategy",
+                          "coherent,cranley-patterson,micro-jitter", *GPU, "--json").json["rows"]
         self.assertEqual(len({tuple(row["samples"]) for row in rows}), 1)
         self.assertTrue(all(0 <= i < 1000 for i in rows[0]["samples"]))
 
