@@ -187,7 +187,7 @@ class NoTime(ProgramTest):
         for gpu, change in (("mine.toml", "timing.not_predicted=''"), ("xeon-8380", 'timing.not_predicted=""')):
             row = self.succeeds("replay", trace, "--gpu", gpu, "--timed", "--json", "--set", change).json["rows"][0]
             self.assertGreater(row["cycles"], 0)
-        self.refuses(1, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.not_predicted=1",
+        self.refuses(2, "replay", trace, "--gpu", "mine.toml", "--timed", "--set", "timing.not_predicted=1",
                      mentions=["timing.not_predicted", "text"])
 
 
