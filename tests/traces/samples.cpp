@@ -205,7 +205,8 @@ Sample noise(const Shape& shape) {
             if (mask == 0) continue;
             const auto region = static_cast<std::uint8_t>(
                 random.chance(10) ? ray_start : random.below(static_cast<std::uint32_t>(sample.header.regions.size())));
-            add(warp, mask, region, static_cast<RayType>(random.below(ray_types)), random.below(max_bounce + 1));
+            const unsigned bounce = random.below(max_bounce + 1);  // drawn first, whatever the compiler
+            add(warp, mask, region, static_cast<RayType>(random.below(ray_types)), bounce);
             if (region == ray_start) continue;
             const std::uint32_t count = sample.header.regions[region].count;
             std::uint32_t element = random.below(count);
@@ -227,9 +228,10 @@ Sample texel_reads(const Shape& shape) {
         add(warp, 0xffffffffu, ray_start, RayType::camera, 0);
         for (unsigned read = 0; read < 16; ++read) {
             add(warp, 0xffffffffu, 0, RayType::camera, 0);
-            for (unsigned lane = 0; lane < warp_lanes; ++lane)
-                warp.elements.push_back((100 + lane / 8 + random.below(radius)) * width + 8 * warp.warp + lane % 8 +
-                                        random.below(radius));
+            for (unsigned lane = 0; lane < warp_lanes; ++lane) {
+                const std::uint32_t row = 100 + lane / 8 + random.below(radius);
+                warp.elements.push_back(row * width + 8 * warp.warp + lane % 8 + random.below(radius));
+            }
         }
     });
     return sample;
