@@ -2,6 +2,7 @@
 """raycache quality, raycache sweep and tools/plot_sweep."""
 import csv
 import io
+import json
 import os
 import subprocess
 import sys
@@ -288,8 +289,18 @@ class Sweep(QualityTest):
         plot = [sys.executable, ROOT / "tools/plot_sweep"]
         # matplotlib would look through all fonts again for a cache folder of its own.
         usual = {name: value for name, value in os.environ.items() if name != "XDG_CACHE_HOME"}
-        subprocess.run([*plot, "sweep.json", "-o", "sweep.png"], cwd=self.folder, env=usual, check=True, timeout=300)
-        self.assertEqual(self.path("sweep.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        document = json.loads(self.path("sweep.json").read_text())
+        for row in document["rows"]:
+            row["r8"] |= {"value": None, "half_width_95": None}
+            row["rmse_ratio"] = row["rmse_ratio_half_width_95"] = None
+        self.path("unknown.json").write_text(json.dumps(document))
+        for name in ("sweep", "unknown"):
+            with self.subTest(name):
+                done = subprocess.run([*plot, f"{name}.json", "-o", "sweep.png"], cwd=self.folder, env=usual,
+                                      capture_output=True, timeout=300, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertNotIn(b"Warning", done.stderr)
+                self.assertEqual(self.path("sweep.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.path("bad.json").write_text("{}")
         done = subprocess.run([*plot, "bad.json", "-o", "bad.png"], cwd=self.folder, env=usual, capture_output=True,
                               timeout=300, check=False)
