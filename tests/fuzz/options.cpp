@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "tests/fuzz/fuzz.hpp"
-#include "tools/program.hpp"
+#include "tools/program/program.hpp"
 
 using namespace raycache;
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/program.hpp"
+#include "tools/program/program.hpp"
 
 namespace raycache::test {
 

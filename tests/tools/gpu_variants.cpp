@@ -1,5 +1,5 @@
 // --set KEY=a,b and cache sizes: how many GPUs they make, of which geometry, and what they are called.
-#include "tools/gpu_variants.hpp"
+#include "tools/jobs/gpu_variants.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // compare and explain: a scene or traces, told apart by what a file holds.
-#include "tools/inputs.hpp"
+#include "tools/program/inputs.hpp"
 
 #include <catch2/catch.hpp>
 

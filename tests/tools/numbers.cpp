@@ -1,5 +1,5 @@
 // Every number on every command line is decimal, finite, whole of word, and in its range.
-#include "tools/numbers.hpp"
+#include "tools/jobs/numbers.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,5 +1,5 @@
 // The time left of a command, against commands whose end is known: a clock that the test turns.
-#include "tools/time_left.hpp"
+#include "tools/program/time_left.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

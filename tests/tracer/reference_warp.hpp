@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "tracer/prepared_scene.hpp"
-#include "tracer/simt/box_test.hpp"
-#include "tracer/simt/triangle_test.hpp"
+#include "tracer/simt/ray_box.hpp"
+#include "tracer/simt/ray_triangle.hpp"
 
 namespace raycache::tracer::test {
 

@@ -14,9 +14,9 @@
 #include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/ray.hpp"
 #include "tracer/scene/cutout.hpp"
-#include "tracer/simt/box_test.hpp"
+#include "tracer/simt/ray_box.hpp"
+#include "tracer/simt/ray_triangle.hpp"
 #include "tracer/simt/recorder.hpp"
-#include "tracer/simt/triangle_test.hpp"
 
 namespace raycache::tracer {
 

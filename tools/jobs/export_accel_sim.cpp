@@ -1,0 +1,73 @@
+#include "tools/jobs/export_accel_sim.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/program/console.hpp"
+#include "tools/program/outputs.hpp"
+#include "tools/program/progress.hpp"
+#include "traces/accelsim/xz_file.hpp"
+#include "traces/error.hpp"
+#include "traces/read_launch.hpp"
+
+namespace raycache::tools {
+namespace {
+
+void write_kernel(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
+                  const std::string& path) {
+    traces::XzFile file(path);
+    traces::TracegText text(reader.header(), settings, [&](std::string_view piece) { file.write(piece); });
+    Progress progress("export");
+    const auto stage = progress.begin("write", reader.header().warps_per_launch, "warps");
+    traces::read_launch(reader, launch, [&](const traces::WarpTrace& warp) {
+        text.add(warp);
+        stage.add(1, 1);
+    });
+    text.finish();
+    file.commit();
+}
+
+constexpr const char *kernel_name = "kernel-1.traceg", *list_name = "kernelslist.g";
+
+/// Whether the output is the kernel itself, not a folder for it.
+bool is_kernel(const std::string& output) {
+    std::error_code error;
+    return output == "-" || output.ends_with(".traceg") || output.ends_with(".traceg.xz") ||
+           std::filesystem::is_other(output, error);
+}
+
+}  // namespace
+
+std::vector<std::string> accel_sim_files(const std::string& output) {
+    if (is_kernel(output)) return {output};
+    const std::filesystem::path folder = output;
+    return {(folder / kernel_name).string(), (folder / list_name).string()};
+}
+
+void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
+                      const std::string& output) {
+    if (is_kernel(output)) {
+        check_outputs({output});
+        return write_kernel(reader, launch, settings, output);
+    }
+    std::error_code error;
+    const bool made = std::filesystem::create_directory(output, error);
+    if (error || !std::filesystem::is_directory(output, error))
+        throw Error(
+            fmt::format("{}: expected a folder or room for a new one, found {}; name another folder, or a file that "
+                        "ends in .traceg "
+                        "or .traceg.xz",
+                        output, error ? fmt::format("\"{}\"", error.message()) : std::string("a file")));
+    const std::filesystem::path folder = output;
+    try {
+        check_outputs(accel_sim_files(output));
+        write_kernel(reader, launch, settings, folder / kernel_name);
+        write_text(folder / list_name, fmt::format("{}\n", kernel_name));
+    } catch (...) {
+        if (made) std::filesystem::remove(folder, error);  // if it is empty
+        throw;
+    }
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,258 @@
+#include "tools/jobs/quality_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "tools/jobs/canvas.hpp"
+#include "tools/jobs/colour_scale.hpp"
+#include "tools/jobs/exposure.hpp"
+#include "tracer/tone_map.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+using tracer::Image;
+
+constexpr unsigned margin = 16, panel = 288, line = ScaleBar::line, text_scale = ScaleBar::text_scale;
+constexpr std::uint32_t usual_crop = 96;
+
+/// Luminance of picture minus reference.
+std::vector<double> luminance_error(const Image& image, const Image& reference) {
+    std::vector<double> error(image.pixels.size());
+    for (std::size_t p = 0; p < error.size(); ++p)
+        error[p] = double{tracer::luminance(image.pixels[p]) - tracer::luminance(reference.pixels[p])};
+    return error;
+}
+
+std::string file_name(std::string label) {
+    for (char& c : label)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+    return label;
+}
+
+/// The square of whole blocks in which the squared block means of all rows add up to most.
+Crop worst_crop(const QualityReport& report) {
+    const std::uint32_t side = std::min({usual_crop, report.width, report.height});
+    const auto& first = report.rows.front().errors.sums.blocks;
+    const std::uint32_t blocks = side / tracer::error_block;
+    Crop best{0, 0, side};
+    double most = -1;
+    for (std::uint32_t top = 0; top + blocks <= first.rows; ++top)
+        for (std::uint32_t left = 0; left + blocks <= first.columns; ++left) {
+            double sum = 0;
+            for (const QualityRow& row : report.rows)
+                for (std::uint32_t y = top; y < top + blocks && row.errors.block_rmse.value > 0; ++y)
+                    for (std::uint32_t x = left; x < left + blocks; ++x) {
+                        const double mean = row.errors.sums.blocks.mean[std::size_t{y} * first.columns + x];
+                        // A few bright pixels must not choose the place: sizes, not squares.
+                        sum += std::fabs(mean) / row.errors.block_rmse.value;
+                    }
+            if (!(sum > most)) continue;
+            most = sum;
+            best = {left * tracer::error_block, top * tracer::error_block, side};
+        }
+    return best;
+}
+
+/// Fills a panel with `colour(x, y)` of a part of a picture, enlarged by a whole number or reduced to every n-th pixel.
+template <class ColourAt>
+void draw_part(Canvas& canvas, unsigned x, unsigned y, std::uint32_t width, std::uint32_t height,
+               const ColourAt& colour) {
+    const std::uint32_t side = std::max(width, height);
+    for (unsigned row = 0; row < panel; ++row)
+        for (unsigned column = 0; column < panel; ++column) {
+            const std::uint32_t px = column * side / panel, py = row * side / panel;
+            if (px < width && py < height) canvas.fill(x + column, y + row, 1, 1, colour(px, py));
+        }
+    canvas.outline(x, y, std::max(1U, width * panel / side), std::max(1U, height * panel / side), {0, 0, 0});
+}
+
+void draw_crop(Canvas& canvas, unsigned x, unsigned y, const Image& image, const Crop& crop, float exposure) {
+    draw_part(canvas, x, y, crop.side, crop.side, [&](std::uint32_t px, std::uint32_t py) {
+        return tracer::tone_map(image.pixels[std::size_t{crop.y + py} * image.width + crop.x + px], exposure);
+    });
+}
+
+void draw_error(Canvas& canvas, unsigned x, unsigned y, const Image& image, const Image& reference, const Crop& crop,
+                const Scale& scale) {
+    const auto error = luminance_error(image, reference);
+    draw_part(canvas, x, y, crop.side, crop.side, [&](std::uint32_t px, std::uint32_t py) {
+        return scale.of(error[std::size_t{crop.y + py} * image.width + crop.x + px]);
+    });
+}
+
+std::string number_text(double value, int digits) {
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
+/// Without its interval: a caption is short.
+std::string short_text(tracer::Measured m, int digits, bool general = false) {
+    m.half_width = std::nan("");
+    return tracer::measured_text(m, digits, general);
+}
+
+std::string speed_text(const QualityRow& row) {
+    if (!row.timing || !std::isfinite(row.timing->seconds)) return {};
+    return row.timing->speed_up ? fmt::format(", predicted speed {:.2f} x", row.timing->speed_up->mean)
+                                : std::string(", predicted speed 1 x");
+}
+
+tracer::ScreenImage draw_index(const QualityReport& report, const Image& reference, const Crop& crop,
+                               const Scale& pixels, const Scale& blocks, float exposure) {
+    const bool equal_time = report.rows.front().equal_time.has_value();
+    const unsigned columns = equal_time ? 5 : 3, row_height = line + panel + margin;
+    const unsigned top = margin + 4 * line + 8;
+    const unsigned rows = static_cast<unsigned>(report.rows.size()) + 1;
+    Canvas canvas(margin + columns * (panel + margin), top + rows * row_height + line + margin);
+    const auto column = [](unsigned c) { return margin + c * (panel + margin); };
+    canvas.text(margin, margin,
+                fmt::format("{}, {} x {} pixels, reference of {} samples per pixel", report.scene, report.width,
+                            report.height, report.reference_spp),
+                text_scale);
+    canvas.text(margin, margin + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", text_scale);
+    canvas.text(margin, margin + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", text_scale);
+    if (equal_time)
+        canvas.text(margin, margin + 3 * line,
+                    fmt::format("Equal time: as many samples as {} predicts to fit into the time of {}.", report.gpu,
+                                report.baseline.empty() ? "each" : report.baseline),
+                    text_scale);
+
+    // First row: what is shown, and the scales.
+    canvas.text(column(0), top, "reference, crop", text_scale);
+    draw_crop(canvas, column(0), top + line, reference, crop, exposure);
+    canvas.text(column(1), top, "reference, whole", text_scale);
+    draw_part(canvas, column(1), top + line, reference.width, reference.height, [&](std::uint32_t x, std::uint32_t y) {
+        return tracer::tone_map(reference.pixels[std::size_t{y} * reference.width + x], exposure);
+    });
+    const std::uint32_t side = std::max(reference.width, reference.height);
+    for (const unsigned inset : {0U, 1U})
+        canvas.outline(column(1) + crop.x * panel / side + inset, top + line + crop.y * panel / side + inset,
+                       crop.side * panel / side - 2 * inset, crop.side * panel / side - 2 * inset, {230, 60, 0});
+    canvas.text(column(2), top, "error, red: too bright", text_scale);
+    ScaleBar::draw(canvas, column(2), top + 2 * line, panel, pixels, "pixel, luminance");
+    ScaleBar::draw(canvas, column(2), top + 6 * line, panel, blocks, "mean of 8 x 8");
+
+    for (unsigned r = 0; r < report.rows.size(); ++r) {
+        const QualityRow& row = report.rows[r];
+        const unsigned y = top + (r + 1) * row_height;
+        canvas.text(column(0), y,
+                    fmt::format("{}, N {}, RMSE {}, R8 {}, z {}{}", label(row, report.rows), row.spp(),
+                                short_text(row.errors.rmse, 3, true), short_text(row.errors.r8, 1),
+                                number_text(row.errors.z_pixels, 1), speed_text(row)),
+                    text_scale);
+        draw_crop(canvas, column(0), y + line, row.picture, crop, exposure);
+        draw_error(canvas, column(1), y + line, row.picture, reference, crop, pixels);
+        const auto& means = row.errors.sums.blocks;
+        if (means.columns > 0 && means.rows > 0)
+            draw_part(canvas, column(2), y + line, means.columns, means.rows, [&](std::uint32_t bx, std::uint32_t by) {
+                return blocks.of(means.mean[std::size_t{by} * means.columns + bx]);
+            });
+        if (!equal_time) continue;
+        const QualityRow::EqualTime& same = *row.equal_time;
+        canvas.text(column(3), y,
+                    fmt::format("equal time: N {}, RMSE {}, R8 {}", same.spp, short_text(same.errors.rmse, 3, true),
+                                short_text(same.errors.r8, 1)),
+                    text_scale);
+        draw_crop(canvas, column(3), y + line, same.picture, crop, exposure);
+        draw_error(canvas, column(4), y + line, same.picture, reference, crop, pixels);
+    }
+    const unsigned bottom = top + rows * row_height;
+    canvas.text(column(0), bottom, "picture, crop", text_scale);
+    canvas.text(column(1), bottom, "error, crop", text_scale);
+    canvas.text(column(2), bottom, "error, whole, 8x8", text_scale);
+    if (equal_time) {
+        canvas.text(column(3), bottom, "equal time, crop", text_scale);
+        canvas.text(column(4), bottom, "its error", text_scale);
+    }
+    return canvas.image();
+}
+
+void write_row(const std::string& stem, const QualityRow& row, const Image& reference, const Scale& scale,
+               float exposure, Deliveries& deliveries) {
+    deliveries.attempt([&] { tracer::write_image(stem + ".exr", row.picture); });
+    deliveries.attempt([&] { tracer::write_image(stem + ".png", row.picture, exposure); });
+    Image error = row.picture;
+    for (std::size_t p = 0; p < error.pixels.size(); ++p) error.pixels[p] = error.pixels[p] - reference.pixels[p];
+    deliveries.attempt([&] { tracer::write_image(stem + "_error.exr", error); });
+    Canvas canvas(error.width, error.height + ScaleBar::height + 2 * line + 8);
+    const auto luminance = luminance_error(row.picture, reference);
+    for (std::uint32_t y = 0; y < error.height; ++y)
+        for (std::uint32_t x = 0; x < error.width; ++x)
+            canvas.fill(x, y, 1, 1, scale.of(luminance[std::size_t{y} * error.width + x]));
+    ScaleBar::draw(canvas, 0, error.height + 4, error.width, scale, "luminance minus reference");
+    deliveries.attempt([&] { tracer::write_screen_image(stem + "_error.png", canvas.image()); });
+    const auto& blocks = row.errors.sums.blocks;
+    if (blocks.columns > 0 && blocks.rows > 0)
+        deliveries.attempt([&] {
+            tracer::write_channels(stem + "_blocks.exr", blocks.columns, blocks.rows, {{"Y", blocks.mean}});
+        });
+}
+
+}  // namespace
+
+Crop parse_crop(const std::string& text, std::uint32_t width, std::uint32_t height) {
+    Crop crop;
+    std::uint32_t* const out[3] = {&crop.x, &crop.y, &crop.side};
+    const char *at = text.data(), *end = at + text.size();
+    bool good = true;
+    for (int i = 0; i < 3 && good; ++i) {
+        const auto [stop, error] = std::from_chars(at, end, *out[i]);
+        good = error == std::errc{} && (i == 2 ? stop == end : stop != end && *stop == ',');
+        at = stop + 1;
+    }
+    if (!good || crop.side == 0 || std::uint64_t{crop.x} + crop.side > width ||
+        std::uint64_t{crop.y} + crop.side > height)
+        throw UsageError(fmt::format("--crop '{}'; expected X,Y,SIDE within {} x {} pixels, such as 0,0,{}", text,
+                                     width, height, std::min({usual_crop, width, height})));
+    return crop;
+}
+
+void check_picture_folder(const std::string& folder) {
+    refuse_stdout("--output", folder);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw Error(fmt::format("--output {}: expected a folder that can be made, found: {}; choose another", folder,
+                                error.message()));
+}
+
+std::vector<std::string> quality_picture_names(const std::string& folder,
+                                               const std::vector<tracer::CaptureSettings>& cases) {
+    const std::filesystem::path path(folder);
+    std::vector<std::string> names{(path / "index.png").string(), (path / "reference.png").string()};
+    std::vector<QualityRow> rows(cases.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].settings = cases[i];
+    for (const QualityRow& row : rows)
+        for (const char* end : {".exr", ".png", "_error.exr", "_error.png", "_blocks.exr"})
+            names.push_back((path / file_name(label(row, rows))).string() + end);
+    return names;
+}
+
+void write_quality_pictures(const std::string& folder, const QualityReport& report,
+                            const std::optional<Crop>& given_crop, Deliveries& deliveries) {
+    const Image& reference = report.reference;
+    const Crop crop = given_crop ? *given_crop : worst_crop(report);
+    const float exposure = automatic_exposure(reference);
+    std::vector<double> errors, means;
+    for (const QualityRow& row : report.rows) {
+        const auto own = luminance_error(row.picture, reference);
+        errors.insert(errors.end(), own.begin(), own.end());
+        means.insert(means.end(), row.errors.sums.blocks.mean.begin(), row.errors.sums.blocks.mean.end());
+    }
+    const Scale pixels = symmetric_scale(errors), blocks = symmetric_scale(means);
+    const std::filesystem::path path(folder);
+    for (const QualityRow& row : report.rows)
+        write_row((path / file_name(label(row, report.rows))).string(), row, reference, pixels, exposure, deliveries);
+    deliveries.attempt([&] { tracer::write_image((path / "reference.png").string(), reference, exposure); });
+    deliveries.attempt([&] {
+        tracer::write_screen_image((path / "index.png").string(),
+                                   draw_index(report, reference, crop, pixels, blocks, exposure));
+    });
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,131 @@
+// raycache compare: strategies side by side, from trace files or straight from a scene.
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <set>
+
+#include "tools/jobs/costs.hpp"
+#include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/idle_options.hpp"
+#include "tools/program/inputs.hpp"
+#include "tools/program/interruption.hpp"
+#include "tools/program/options.hpp"
+#include "tools/program/program.hpp"
+#include "tools/program/report_options.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    InputOptions inputs;
+    SceneOptions scene;
+    std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter"};
+    std::vector<std::string> sequences{"sobol"};
+    std::vector<std::uint64_t> spp{64};
+    std::vector<std::string> ks{"2.5"};
+    SamplingOptions sampling;
+    ReportOptions report;
+    ThreadOptions threads;
+};
+
+Job plan_traces(const std::shared_ptr<const Options>& o, const Command* command,
+                const std::vector<std::string>& traces) {
+    const auto gpus = o->report.load_gpus(traces);
+    return [o, command, traces, gpus] {
+        for (const std::string& line : idle_on_traces(*command)) warn(line);
+        check_outputs(o->report.outputs());
+        const auto limit = o->threads.apply();
+        Progress progress("compare");
+        const TraceFiles files(traces);
+        o->report.replay_and_publish(files.sources, traces, gpus, progress);
+    };
+}
+
+/// One for each sequence, N, strategy and K; a strategy without K once.
+std::vector<tracer::CaptureSettings> settings_of(const Options& o) {
+    std::vector<tracer::CaptureSettings> all;
+    std::set<std::string> seen;
+    for (const std::string& sequence : o.sequences)
+        for (const std::uint64_t spp : o.spp)
+            for (const std::string& strategy : o.strategies)
+                for (const std::string& k : o.ks) {
+                    SamplingOptions sampling = o.sampling;
+                    sampling.k = k;
+                    const auto settings = sampling.capture(o.scene, sequence, strategy, spp);
+                    const tracer::SamplingStrategy made(settings.strategy,
+                                                        tracer::path_dimensions(settings.paths.bounces));
+                    if (o.ks.size() == 1 ||
+                        seen.insert(fmt::format("{} {} {} {}", sequence, spp, strategy, made.parameters())).second)
+                        all.push_back(settings);
+                }
+    return all;
+}
+
+/// Fused: no files between capture and replay.
+Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command) {
+    const auto gpus = o->report.load_gpus({});
+    const std::vector<tracer::CaptureSettings> settings = settings_of(*o);
+    return [o, command, gpus, settings] {
+        warn_of_settings(*command, settings);
+        check_outputs(o->report.outputs());
+        const auto limit = o->threads.apply();
+        advise_if_interrupted(
+            "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "
+            "those");
+        Progress progress("compare");
+        double seconds = 0;
+        for (const auto& s : settings)
+            seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, o->report.timed);
+        progress.expect("replay", o->report.timed ? Work::timed_replay : Work::replay, seconds);
+        const auto scene = o->scene.prepare(o->report.outputs(), progress);
+        std::vector<std::unique_ptr<tracer::Capture>> captures;
+        captures.reserve(settings.size());
+        for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
+        o->report.replay_and_publish(sources_of(captures), {}, gpus, progress);
+    };
+}
+
+}  // namespace
+
+void add_compare(Program& program) {
+    auto o = std::make_shared<Options>();
+    Command* command =
+        program.add_subcommand("compare", "Compare strategies, straight from a scene or from trace files");
+    o->inputs.add(*command, "trace files");
+    add_strategies(*command, o->strategies, true);
+    add_sequences(*command, o->sequences);
+    add_spps(*command, o->spp, "sizes N of the sample set, separated by commas");
+    o->threads.add(*command);
+    o->report.add(*command, true);
+    o->scene.add_view(*command);
+    o->sampling.add_launches(*command);
+    o->sampling.add_execution(*command);
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    command->remove_option("--k");  // of one strategy; here it is a list
+    command->group("Sampling", true);
+    command
+        ->add_option("--k", o->ks,
+                     "K of micro-jitter's mu = min(1, K * N^(-1/s)), or 'discrepancy': (N * D*_N)^(1/s); several, "
+                     "separated by commas, make a row each")
+        ->range(0.0, std::numeric_limits<double>::max())
+        ->number_or("discrepancy");
+    command->group("");
+    command->examples(
+        {"raycache compare courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 "
+         "--gpu gtx-980-ti",
+         "raycache compare cp.rct mj.rct coherent.rct --gpu gtx-980-ti --gpu h100",
+         "raycache compare sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv",
+         "raycache compare courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
+         "cranley-patterson+meister,micro-jitter --gpu h100"});
+    command->plan([o, command] {
+        const Inputs inputs = o->inputs.sorted(*command);
+        o->scene.source = inputs.scene;
+        return inputs.scene.empty() ? plan_traces(o, command, inputs.traces) : plan_scene(o, command);
+    });
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,117 @@
+// raycache completion: prints a script that completes raycache's command lines. Hidden: packages and users' start-up
+// files call it; `cmake --install` does.
+#include "tools/program/completion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "tools/jobs/samples_tables.hpp"
+#include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/program.hpp"
+#include "tracer/sampling/decorrelation.hpp"
+#include "tracer/sampling/sequence.hpp"
+#include "tracer/scene/scene.hpp"
+#include "tracer/simt/orders/ray_order.hpp"
+
+namespace raycache::tools {
+namespace {
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+    std::vector<std::string> names;
+    for (const auto& item : list) names.push_back(item.name);
+    return names;
+}
+
+/// Every key of every preset, as --set takes it.
+std::vector<std::string> gpu_keys() {
+    std::vector<std::string> keys;
+    for (const cachesim::GpuPreset& preset : cachesim::gpu_presets())
+        for (const cachesim::GpuValue& value : cachesim::gpu_values(preset.name)) keys.push_back(value.key + '=');
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+}
+
+/// What options and positional arguments of these names take, in every command.
+const std::map<std::string, Candidates>& known() {
+    static const std::map<std::string, Candidates> table = [] {
+        const std::vector<std::string> strategies = names_of(tracer::decorrelations()),
+                                       scenes = names_of(tracer::builtin_scenes());
+        const Candidates any_file{{}, {"*"}}, traces{{}, {"rct"}}, scene{scenes, {"glb", "gltf"}},
+            trace_or_scene{scenes, {"rct", "glb", "gltf"}}, strategy{strategies, {}};
+        return std::map<std::string, Candidates>{
+            {"--strategy", strategy},
+            {"--baseline", strategy},
+            {"--swept", strategy},
+            {"--reference-strategy", strategy},
+            {"--sequence", {names_of(tracer::sequences()), {}}},
+            {"--order", {names_of(tracer::ray_orders()), {}}},
+            {"--gpu", {names_of(cachesim::gpu_presets()), {"toml"}}},
+            {"--set", {gpu_keys(), {}}},
+            {"--scene", scene},
+            {"SCENE", scene},
+            {"TRACE", traces},
+            {"TRACES", traces},
+            {"INPUTS", trace_or_scene},
+            {"FILE", any_file},
+            {"--sky", {{"auto", "on", "off"}, {}}},
+            {"--lights", {{"auto", "bsdf", "nee", "mis"}, {}}},
+            {"--execution", {{"megakernel", "wavefront"}, {}}},
+            {"--thread-map", {{"tile", "samples", "classes"}, {}}},
+            {"--by", {{"none", "bounce", "ray", "object"}, {}}},
+            {"--format", {{"dinero", "u64", "csv", "accel-sim"}, {}}},
+            {"--level", {{"l1", "l2", "l3"}, {}}},
+            {"--table", {samples_table_names(), {}}},
+            {"TOPIC", {{"strategies", "sequences", "gpus", "layouts", "thread-maps", "orders", "scenes"}, {}}},
+            {"--output", any_file},
+            {"--save", any_file},
+            {"--recover", traces},
+            {"--reference", {{}, {"exr"}}},
+            {"--heatmap", {{}, {"exr"}}},
+            {"--picture", {{}, {"png"}}},
+            {"--figure2", {{}, {"png"}}},
+            {"--csv", {{}, {"csv"}}},
+        };
+    }();
+    return table;
+}
+
+struct Options {
+    std::string shell;
+};
+
+void run(const Options& o, const Program& program) {
+    const std::vector<CommandView> commands = views_of_commands(program);
+    if (o.shell == "bash") return print(bash_completion(commands));
+    if (o.shell == "zsh") return print(zsh_completion(commands));
+    std::string text;  // for man pages: what there is to describe
+    for (const CommandView& command : commands) text += fmt::format("{} {}\n", command.name, command.description);
+    print(text);
+}
+
+}  // namespace
+
+Candidates candidates_of(const OptionView& option) {
+    if (!option.choices.empty()) return {option.choices, {}};
+    const auto at = known().find(option.names.empty() ? option.title : "--" + option.title);
+    return at == known().end() ? Candidates{} : at->second;
+}
+
+void add_completion(Program& program) {
+    auto o = std::make_shared<Options>();
+    Command* command = program.add_subcommand("completion", "Print a script that completes raycache's command lines");
+    command->hide();
+    command->add_option("SHELL", o->shell, "bash or zsh; or commands: every subcommand and what it does")
+        ->required()
+        ->choices("shell", {"bash", "zsh", "commands"});
+    command->examples({"source <(raycache completion bash)",
+                       "raycache completion zsh > ~/.zfunc/_raycache      # a folder of $fpath"});
+    command->callback([o, &program] { run(*o, program); });
+}
+
+}  // namespace raycache::tools

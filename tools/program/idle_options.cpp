@@ -1,0 +1,206 @@
+#include "tools/program/idle_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "tools/program/console.hpp"
+#include "tools/program/options.hpp"
+
+namespace raycache::tools {
+namespace {
+
+using Case = tracer::CaptureSettings;
+using tracer::Parameter;
+
+struct Context {
+    const Command& command;
+    const CaseUse& use;
+
+    bool given(const char* name) const {
+        const Option* option = command.find_option(name);
+        return option && option->given();
+    }
+    std::string value(const char* name) const {
+        const Option* option = command.find_option(name);
+        return option && option->given() ? option->words().back() : "";
+    }
+};
+
+/// Why a case does not read the option; empty where it does.
+using Rule = std::function<std::string(const Case&, const Context&)>;
+
+std::string readers_of(Parameter parameter) {
+    std::string names;
+    std::size_t count = 0;
+    for (const auto& entry : tracer::decorrelations()) {
+        const bool always = entry.reads_parameter(parameter, {});
+        tracer::DecorrelationSettings with_mu;
+        with_mu.mu = 0.5;
+        if (!always && !entry.reads_parameter(parameter, with_mu)) continue;
+        names += (names.empty() ? "" : ", ") + entry.name;
+        ++count;
+    }
+    return fmt::format("{} do{}", names, count == 1 ? "es" : "");
+}
+
+/// An option beside which the decorrelation does not read that parameter.
+std::string shadowing_option(const tracer::DecorrelationEntry& entry, Parameter parameter,
+                             const tracer::DecorrelationSettings& settings) {
+    tracer::DecorrelationSettings other = settings;
+    other.mu.reset();
+    if (settings.mu && entry.reads_parameter(parameter, other)) return "--mu";
+    other = settings;
+    other.cycles.min_samples = 0;
+    if (entry.reads_parameter(parameter, other)) return "--cycles-min-samples";
+    other = settings;
+    other.cycles.noise_threshold = 0.01;
+    if (entry.reads_parameter(parameter, other)) return "--cycles-noise-threshold off";
+    return {};
+}
+
+std::string unread(Parameter parameter, const Case& c) {
+    const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
+    const auto& settings = c.strategy.parameters;
+    if (entry.reads_parameter(parameter, settings)) return {};
+    const std::string beside = shadowing_option(entry, parameter, settings);
+    if (!beside.empty()) return fmt::format("{} is given, which takes its place", beside);
+    return fmt::format("{} does not read it ({})", entry.name, readers_of(parameter));
+}
+
+Rule parameter_rule(Parameter parameter) {
+    return [parameter](const Case& c, const Context&) { return unread(parameter, c); };
+}
+
+std::string seed_rule(const Case& c, const Context& context) {
+    const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
+    if (entry.reads_parameter(Parameter::seed, c.strategy.parameters)) return {};
+    const auto& all = tracer::sequences();
+    const auto sequence =
+        std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == c.strategy.sequence; });
+    if (sequence != all.end() && sequence->reads_seed) return {};
+    if (context.use.launches && c.trace_samples < c.strategy.parameters.spp) return {};
+    return fmt::format("{} of {} does not depend on it", entry.name, c.strategy.sequence);
+}
+
+std::string launches_rule(const Case&, const Context& context) {
+    return context.use.launches ? "" : context.use.without_launches;
+}
+
+std::string trace_samples_rule(const Case& c, const Context& context) {
+    if (!context.use.launches) return context.use.without_launches;
+    const std::uint64_t n = c.strategy.parameters.spp;
+    return c.trace_samples > n ? fmt::format("N is {}, so that all {} are traced", n, n) : "";
+}
+
+std::string interleave_rule(const Case& c, const Context& context) {
+    if (context.use.launches && c.thread_map == tracer::ThreadMap::classes) return {};
+    return unread(Parameter::interleave, c);
+}
+
+std::string limit_rule(std::uint32_t limit, const Case& c) {
+    return limit > c.paths.bounces ? fmt::format("a path has {} bounces at most", c.paths.bounces) : "";
+}
+
+struct OptionRule {
+    const char* option;
+    Rule why_unread;
+};
+
+const std::vector<OptionRule>& rules() {
+    static const std::vector<OptionRule> all{
+        {"--sequence", parameter_rule(Parameter::sequence)},
+        {"--k", parameter_rule(Parameter::k)},
+        {"--s", parameter_rule(Parameter::s)},
+        {"--mu", parameter_rule(Parameter::mu)},
+        {"--cycles-multiplier", parameter_rule(Parameter::cycles_multiplier)},
+        {"--cycles-min-samples", parameter_rule(Parameter::cycles_min_samples)},
+        {"--cycles-noise-threshold", parameter_rule(Parameter::cycles_noise_threshold)},
+        {"--interleave", interleave_rule},
+        {"--seed", seed_rule},
+        {"--trace-samples", trace_samples_rule},
+        {"--thread-map", launches_rule},
+        {"--spatial-splits", launches_rule},
+        {"--set", launches_rule},
+        {"--warps-per-sm", launches_rule},
+        {"--bounces-diffuse", [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_diffuse, c); }},
+        {"--bounces-transmission",
+         [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_transmission, c); }},
+        {"--russian-roulette",
+         [](const Case& c, const Context&) {
+             return c.paths.bounces < 2 ? std::string("it begins at the second bounce") : std::string();
+         }},
+        {"--order",
+         [](const Case& c, const Context& context) {
+             return context.value("--order") == c.execution.order
+                        ? std::string()
+                        : std::string("the strategy's own +ORDER takes its place");
+         }},
+        {"--execution",
+         [](const Case& c, const Context& context) {
+             return context.value("--execution") == tracer::to_string(c.execution.execution)
+                        ? std::string()
+                        : std::string("the strategy's own +ORDER takes its place");
+         }},
+        {"--camera",
+         [](const Case&, const Context& context) {
+             return context.given("--eye") && context.given("--fov")
+                        ? std::string("--eye, --look-at and --fov take its place")
+                        : std::string();
+         }},
+    };
+    return all;
+}
+
+}  // namespace
+
+std::vector<std::string> idle_options(const Command& command, std::span<const tracer::CaptureSettings> cases,
+                                      const CaseUse& use) {
+    const Context context{command, use};
+    std::vector<std::string> lines;
+    for (const OptionRule& rule : rules()) {
+        if (!context.given(rule.option) || cases.empty()) continue;
+        std::vector<std::string> reasons;
+        for (const Case& c : cases) {
+            const std::string reason = rule.why_unread(c, context);
+            if (reason.empty()) {
+                reasons.clear();
+                break;
+            }
+            if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(reason);
+        }
+        if (!reasons.empty())
+            lines.push_back(fmt::format("{} has no effect: {}", rule.option, fmt::join(reasons, "; ")));
+    }
+    return lines;
+}
+
+std::vector<std::string> idle_besides(const Command& command, const std::vector<std::string>& read,
+                                      const std::string& reason) {
+    std::vector<std::string> lines;
+    for (const auto& option : command.options()) {
+        const bool is_read = std::find(read.begin(), read.end(), option->name()) != read.end();
+        if (!option->given() || option->is_positional() || is_read) continue;
+        lines.push_back(fmt::format("{} has no effect: {}", option->name(), reason));
+    }
+    return lines;
+}
+
+std::vector<std::string> idle_on_traces(const Command& command) {
+    std::vector<std::string> lines;
+    for (const auto& option : command.options())
+        if (option->given() && option->is_about_scene())
+            lines.push_back(fmt::format("{} has no effect: the trace files say it", option->name()));
+    return lines;
+}
+
+void warn_of_settings(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use) {
+    std::vector<std::string> lines = idle_options(command, cases, use);
+    for (const Case& c : cases)
+        for (const std::string& line : settings_warnings(c))
+            if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+    for (const std::string& line : lines) warn(line);
+}
+
+}  // namespace raycache::tools

@@ -1,0 +1,107 @@
+// raycache list: every name that another subcommand takes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/report/json_key.hpp"
+#include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/gpu_details.hpp"
+#include "tools/program/json_output.hpp"
+#include "tools/program/program.hpp"
+#include "tools/program/width_option.hpp"
+#include "tracer/sampling/decorrelation.hpp"
+#include "tracer/sampling/sequence.hpp"
+#include "tracer/scene/scene.hpp"
+#include "tracer/simt/orders/ray_order.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Entry {
+    std::string name, description;
+};
+struct Topic {
+    std::string name;
+    std::vector<Entry> entries;
+};
+
+template <class List>
+std::vector<Entry> entries_of(const List& list) {
+    std::vector<Entry> entries;
+    entries.reserve(list.size());
+    for (const auto& item : list) entries.push_back({item.name, item.description});
+    return entries;
+}
+
+std::vector<Topic> all_topics() {
+    return {{"strategies", entries_of(tracer::decorrelations())},
+            {"sequences", entries_of(tracer::sequences())},
+            {"gpus", entries_of(cachesim::gpu_presets())},
+            {"layouts",
+             {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
+            {"thread-maps",
+             {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
+              {"samples", "a warp = one pixel, 32 consecutive sample indices"},
+              {"classes", "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}}},
+            {"orders", entries_of(tracer::ray_orders())},
+            {"scenes", entries_of(tracer::builtin_scenes())}};
+}
+
+struct Options {
+    std::string topic;
+    JsonOption json;
+    WidthOption width;
+    bool details = false;
+};
+
+void run(const Options& o) {
+    if (o.details) {
+        if (o.topic != "gpus")
+            throw UsageError(
+                fmt::format("--details with topic '{}'; expected 'raycache list gpus --details'", o.topic));
+        print(o.json ? o.json.document(gpu_details_json()) : gpu_details_text(o.width.columns()));
+        return;
+    }
+    std::vector<Topic> topics = all_topics();
+    if (!o.topic.empty()) std::erase_if(topics, [&](const Topic& t) { return t.name != o.topic; });
+    nlohmann::ordered_json json;
+    std::string text;
+    for (const Topic& topic : topics) {
+        std::size_t width = 0;
+        for (const Entry& e : topic.entries) width = std::max(width, e.name.size());
+        text += (text.empty() ? "" : "\n") + topic.name + "\n";
+        for (const Entry& e : topic.entries) {
+            text += cachesim::break_lines(fmt::format("  {:<{}}  {}\n", e.name, width, e.description),
+                                          o.width.columns(), width + 4);
+            json["topics"][cachesim::snake_case(topic.name)].push_back(
+                {{"name", e.name}, {"description", e.description}});
+        }
+    }
+    print(o.json ? o.json.document(json_text(json)) : text);
+}
+
+}  // namespace
+
+void add_list(Program& program) {
+    auto o = std::make_shared<Options>();
+    Command* command = program.add_subcommand(
+        "list", "List strategies, sequences, GPUs, layouts, thread maps, ray orders, built-in scenes");
+    std::vector<std::string> topics;
+    for (const Topic& topic : all_topics()) topics.push_back(topic.name);
+    command
+        ->add_option("TOPIC", o->topic,
+                     "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all")
+        ->choices("topic", topics);
+    o->json.add(*command);
+    o->width.add(*command);
+    command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
+    command->examples({"raycache list", "raycache list gpus --json", "raycache list gpus --details",
+                       "raycache list gpus --details --json"});
+    command->callback([o] { run(*o); });
+}
+
+}  // namespace raycache::tools

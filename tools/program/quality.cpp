@@ -1,0 +1,85 @@
+// raycache quality: how good the pictures of sampling strategies are.
+#include <fmt/format.h>
+
+#include "tools/jobs/quality_pictures.hpp"
+#include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/idle_options.hpp"
+#include "tools/program/program.hpp"
+#include "tools/program/quality_options.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    QualityOptions common;
+    std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter", "random"};
+    std::vector<std::string> sequences{"sobol"};
+    std::vector<std::uint64_t> spp{64};
+    bool pairs = false;
+    std::string output, crop;
+};
+
+Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+    QualityRequest request;
+    for (const std::string& sequence : o->sequences)
+        for (const std::uint64_t spp : o->spp)
+            for (const std::string& strategy : o->strategies)
+                request.cases.push_back(o->common.sampling.capture(o->common.scene, sequence, strategy, spp));
+    request.baseline = o->common.baseline_of(o->strategies);
+    request.pairs = o->pairs;
+    request.equal_time = !o->output.empty() && !o->common.gpu.names.empty();
+    const tracer::CaptureSettings& first = request.cases.front();
+    std::optional<Crop> crop;
+    if (!o->crop.empty()) {
+        if (o->output.empty()) throw UsageError("--crop without --output; expected both");
+        crop = parse_crop(o->crop, first.width, first.height);
+    }
+    check(request);
+    return [o, command, request, crop] {
+        FileNames pictures;
+        if (!o->output.empty()) {
+            check_picture_folder(o->output);
+            pictures = quality_picture_names(o->output, request.cases);
+        }
+        Deliveries deliveries;
+        Progress progress("quality");
+        const QualityReport report = o->common.measure(*command, request, pictures, deliveries, progress);
+        deliveries.attempt([&] {
+            print(o->common.json  ? o->common.json.document(to_json(report), report.subject)
+                  : o->common.csv ? to_csv(report)
+                                  : to_text(report, o->common.width.columns()));
+        });
+        if (!o->output.empty()) write_quality_pictures(o->output, report, crop, deliveries);
+        deliveries.finish();
+    };
+}
+
+}  // namespace
+
+void add_quality(Program& program) {
+    auto o = std::make_shared<Options>();
+    Command* command = program.add_subcommand(
+        "quality", "Measure the error of strategies' pictures: its size, how much of it neighbours share, and bias");
+    add_strategies(*command, o->strategies, false);
+    add_sequences(*command, o->sequences);
+    add_spps(*command, o->spp, "samples per pixel N, separated by commas");
+    command->add_flag("--pairs", o->pairs,
+                      "find the pair of sample dimensions that causes most shared error: one more picture per pair");
+    command
+        ->add_option("-o,--output", o->output,
+                     "folder for pictures: index.png shows all, with --gpu also at equal predicted time")
+        ->type_name("DIR");
+    command->add_option("--crop", o->crop, "the part that index.png shows; default: where blocks err most")
+        ->type_name("X,Y,SIDE");
+    o->common.add(*command, false);
+    command->examples(
+        {"raycache quality courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 64",
+         "raycache quality cornell_box.glb --resolution 256x256 --spp 16,64,256 --reference-spp 4096 --csv",
+         "raycache quality sponza.glb --spp 64 --gpu gtx-980-ti --output pictures",
+         "raycache quality cornell_box.glb --strategy cranley-patterson,micro-jitter --repeats 8 --pairs"});
+    command->plan([o, command] { return plan(o, command); });
+}
+
+}  // namespace raycache::tools

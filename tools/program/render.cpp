@@ -1,0 +1,77 @@
+// raycache render: a picture of a scene, to see that it is what one thinks it is.
+#include <fmt/format.h>
+
+#include "tools/jobs/costs.hpp"
+#include "tools/jobs/exposure.hpp"
+#include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/idle_options.hpp"
+#include "tools/program/options.hpp"
+#include "tools/program/program.hpp"
+#include "tracer/render.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    SamplingOptions sampling;
+    ThreadOptions threads;
+    std::string sequence = "sobol", decorrelation = "cranley-patterson", output;
+    std::uint64_t spp = 64;
+    std::optional<float> exposure, clamp;
+};
+
+Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+    tracer::check_image_name(o->output);
+    const Resolution size = parse_resolution(o->sampling.resolution);
+    tracer::CaptureSettings one;
+    one.width = size.width;
+    one.height = size.height;
+    one.paths = o->sampling.paths();
+    one.strategy = o->sampling.strategy(o->sequence, o->decorrelation, o->spp);
+    tracer::check_clamp(o->clamp);
+    const tracer::SamplingStrategy check(one.strategy, tracer::path_dimensions(one.paths.bounces));
+    return [o, command, one] {
+        warn_of_settings(*command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
+        const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o->clamp};
+        check_outputs({o->output});
+        const auto limit = o->threads.apply();
+        const std::uint64_t paths = std::uint64_t{settings.width} * settings.height * o->spp;
+        Progress progress("render");
+        progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
+        const auto scene = o->scene.prepare({o->output}, progress);
+        const auto stage = progress.begin("render", paths, "paths");
+        const tracer::Image image =
+            tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
+        tracer::write_image(o->output, image, o->exposure ? *o->exposure : automatic_exposure(image));
+    };
+}
+
+}  // namespace
+
+void add_render(Program& program) {
+    auto o = std::make_shared<Options>();
+    Command* command = program.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
+    o->scene.add_name(*command);
+    command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
+        ->choices("strategy", strategy_names());
+    command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")
+        ->choices("sequence", sequence_names());
+    add_spp(*command, o->spp, "samples per pixel");
+    command->add_option("--exposure", o->exposure, "stops; default: chosen from the picture's log-average luminance");
+    command->add_option("--clamp", o->clamp, "radiance that no channel of a sample exceeds; default: none");
+    o->threads.add(*command);
+    o->scene.add_view(*command);
+    o->sampling.add_picture(*command);
+    o->sampling.add_strategy(*command);
+    command->examples({"raycache render courtyard --spp 16 -o courtyard.png",
+                       "raycache render sponza.glb --camera gallery --resolution 1280x720 --spp 256 -o sponza.exr"});
+    command->plan([o, command] { return plan(o, command); });
+}
+
+}  // namespace raycache::tools

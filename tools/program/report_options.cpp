@@ -1,0 +1,130 @@
+#include "tools/program/report_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cachesim/report/profiler.hpp"
+#include "tools/jobs/replay_job.hpp"
+#include "tools/program/console.hpp"
+#include "tools/program/options.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+cachesim::GroupBy parse_by(const std::string& text) {
+    if (text == "none") return cachesim::GroupBy::none;
+    if (text == "bounce") return cachesim::GroupBy::bounce;
+    if (text == "ray") return cachesim::GroupBy::ray;
+    if (text == "object") return cachesim::GroupBy::object;
+    throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
+}
+
+/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+template <class Series>
+std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
+    const std::string usual = "cranley-patterson";
+    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
+    const bool has_usual =
+        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
+    return asked.empty() && has_usual ? usual : asked;
+}
+
+template <class Report>
+void publish(const Report& report, const JsonSubject& subject, const ReportOptions& o) {
+    using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
+    const auto text = [&] {
+        if constexpr (requires { to_text(report, std::size_t{}); })
+            return to_text(report, o.width.columns());
+        else
+            return to_text(report);
+    };
+    const auto json = [&] { return o.json.document(to_json(report), subject); };
+    Deliveries deliveries;
+    deliveries.attempt([&] { print(o.json ? json() : o.csv ? to_csv(report) : text()); });
+    if (!o.save.empty()) {
+        deliveries.attempt([&] { write_text(o.save + ".txt", text()); });
+        deliveries.attempt([&] { write_text(o.save + ".json", json()); });
+        deliveries.attempt([&] { write_text(o.save + ".csv", to_csv(report)); });
+    }
+    deliveries.finish();
+}
+
+}  // namespace
+
+void ReportOptions::add(Command& command, bool with_baseline) {
+    gpus.add_names(command, "GPU preset or FILE.toml, or several (see 'raycache list gpus')")->required();
+    gpus.add_changes(command);
+    command.group("Report");
+    command.add_flag("--timed", timed, "predict cycles, too: latencies, queues and bandwidths beside order")
+        ->excludes({"--by", "--counters"});
+    command
+        .add_option("--by", by,
+                    "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, "
+                    "texel)")
+        ->choices("grouping", {"none", "bounce", "ray", "object"})
+        ->type_name("WHAT");
+    if (with_baseline)
+        command
+            .add_option("--baseline", baseline,
+                        "strategy that ratios refer to; default: cranley-patterson where it is compared")
+            ->check([](std::string& name) { check_strategy_name(name, true); });
+    json.add(command);
+    width.add(command);
+    command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
+    command
+        .add_option("--counters", counters,
+                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
+        ->choices("set of counters", {"ncu"});
+    command.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
+    command.group("");
+}
+
+std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) const {
+    check();
+    refuse_overwriting(inputs, outputs());
+    std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
+    if (timed) gpus.check_timed(loaded);
+    for (const cachesim::Gpu& gpu : loaded)
+        if (!counters.empty() && gpu.levels.size() != 2)
+            throw UsageError(
+                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}: Nsight "
+                            "Compute has no name for one between L1 and the shared L2",
+                            gpu.name, gpu.levels.size()));
+    return loaded;
+}
+
+void ReportOptions::check() const {
+    if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
+    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
+    if (timed && by != "none")
+        throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
+    refuse_stdout("--save", save);
+    parse_by(by);
+}
+
+FileNames ReportOptions::outputs() const {
+    if (save.empty()) return {};
+    return {save + ".txt", save + ".json", save + ".csv"};
+}
+
+void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
+                                       const std::vector<cachesim::Gpu>& loaded, Progress& progress) const {
+    JsonSubject subject{loaded, {}};
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        subject.traces.push_back(settings_json(*sources[i].header, files.empty() ? "" : files[i]));
+    if (timed) {
+        const Predicted all = predict(sources, loaded, progress);
+        return publish(cachesim::make_timed_report(all.times, baseline_of(all.times, baseline), all.traffic), subject,
+                       *this);
+    }
+    const auto series = replay(sources, loaded, progress);
+    const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
+    if (counters.empty())
+        publish(report, subject, *this);
+    else
+        publish(cachesim::ProfilerReport{report}, subject, *this);
+}
+
+}  // namespace raycache::tools
