@@ -13,7 +13,6 @@
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "cachesim/report/pairing.hpp"
 #include "tools/jobs/heat_map.hpp"
-#include "tools/program/console.hpp"
 #include "traces/error.hpp"
 #include "traces/printable.hpp"
 
@@ -85,7 +84,7 @@ void for_each(std::size_t count, const Use& use) {
 
 }  // namespace
 
-Explained explain(const ExplainRequest& request, Progress& progress) {
+Explained explain(const ExplainRequest& request, Observer& observer) {
     check_comparable(request);
     const auto names = names_of(request);
     const cachesim::Gpu& gpu = request.gpu;
@@ -115,8 +114,7 @@ Explained explain(const ExplainRequest& request, Progress& progress) {
             explanation.speed_ups.push_back({ideal, {}, {}, none, none});
     }
 
-    const auto stage =
-        progress.begin("explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
+    const Stage stage(observer, "explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
     std::mutex mutex;
     const auto run_task = [&](std::size_t task) {
         const std::size_t t = task % 2;

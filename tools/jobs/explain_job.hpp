@@ -10,7 +10,7 @@
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "tools/jobs/launch_source.hpp"
-#include "tools/program/progress.hpp"
+#include "tools/jobs/observer.hpp"
 
 namespace raycache::tools {
 
@@ -30,6 +30,6 @@ struct Explained {
 
 /// Throws Error if the traces are not of the same scene, view and sample indices. The result does not depend on the
 /// number of threads.
-Explained explain(const ExplainRequest&, Progress&);
+Explained explain(const ExplainRequest&, Observer&);
 
 }  // namespace raycache::tools

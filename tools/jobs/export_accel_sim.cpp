@@ -4,9 +4,8 @@
 
 #include <filesystem>
 
-#include "tools/program/console.hpp"
-#include "tools/program/outputs.hpp"
-#include "tools/program/progress.hpp"
+#include "tools/jobs/observer.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "traces/accelsim/xz_file.hpp"
 #include "traces/error.hpp"
 #include "traces/read_launch.hpp"
@@ -15,11 +14,10 @@ namespace raycache::tools {
 namespace {
 
 void write_kernel(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
-                  const std::string& path) {
+                  const std::string& path, Observer& observer) {
     traces::XzFile file(path);
     traces::TracegText text(reader.header(), settings, [&](std::string_view piece) { file.write(piece); });
-    Progress progress("export");
-    const auto stage = progress.begin("write", reader.header().warps_per_launch, "warps");
+    const Stage stage(observer, "write", reader.header().warps_per_launch, "warps");
     traces::read_launch(reader, launch, [&](const traces::WarpTrace& warp) {
         text.add(warp);
         stage.add(1, 1);
@@ -46,10 +44,10 @@ std::vector<std::string> accel_sim_files(const std::string& output) {
 }
 
 void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
-                      const std::string& output) {
+                      const std::string& output, Observer& observer) {
     if (is_kernel(output)) {
-        check_outputs({output});
-        return write_kernel(reader, launch, settings, output);
+        check_outputs({output}, observer.warning());
+        return write_kernel(reader, launch, settings, output, observer);
     }
     std::error_code error;
     const bool made = std::filesystem::create_directory(output, error);
@@ -61,8 +59,8 @@ void export_accel_sim(const traces::Reader& reader, std::uint32_t launch, const 
                         output, error ? fmt::format("\"{}\"", error.message()) : std::string("a file")));
     const std::filesystem::path folder = output;
     try {
-        check_outputs(accel_sim_files(output));
-        write_kernel(reader, launch, settings, folder / kernel_name);
+        check_outputs(accel_sim_files(output), observer.warning());
+        write_kernel(reader, launch, settings, folder / kernel_name, observer);
         write_text(folder / list_name, fmt::format("{}\n", kernel_name));
     } catch (...) {
         if (made) std::filesystem::remove(folder, error);  // if it is empty

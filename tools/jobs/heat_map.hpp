@@ -6,7 +6,7 @@
 
 #include "cachesim/analysis/pixel_costs.hpp"
 #include "cachesim/gpus/gpu.hpp"
-#include "tools/program/outputs.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "traces/header.hpp"
 
 namespace raycache::tools {

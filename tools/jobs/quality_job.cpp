@@ -11,8 +11,6 @@
 #include "cachesim/report/estimate.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tools/jobs/replay_job.hpp"
-#include "tools/program/console.hpp"
-#include "tools/program/interruption.hpp"
 #include "tracer/quality/reference_file.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
@@ -53,7 +51,7 @@ tracer::CaptureSettings with_spp(tracer::CaptureSettings settings, std::uint64_t
 class Renderer {
 public:
     Renderer(const tracer::PreparedScene& scene, const tracer::Reference& reference, const QualityRequest& request,
-             const Progress::Stage& stage)
+             const Stage& stage)
         : scene_(scene), reference_(reference), repeats_(request.repeats), clamp_(request.clamp), stage_(stage) {}
 
     tracer::ErrorMeasures measure(const tracer::CaptureSettings& settings, tracer::Image* first = nullptr) {
@@ -73,12 +71,12 @@ private:
     const tracer::Reference& reference_;
     std::uint64_t repeats_;
     std::optional<float> clamp_;
-    const Progress::Stage& stage_;
+    const Stage& stage_;
 };
 
 void render_cases(const tracer::PreparedScene& scene, const tracer::Reference& reference, const QualityRequest& request,
-                  std::vector<QualityRow>& rows, Progress& progress) {
-    const auto stage = progress.begin("strategies", paths_of(request), "paths");
+                  std::vector<QualityRow>& rows, Observer& observer) {
+    const Stage stage(observer, "strategies", paths_of(request), "paths");
     Renderer renderer(scene, reference, request, stage);
     for (QualityRow& row : rows) {
         row.errors = renderer.measure(row.settings, &row.picture);
@@ -104,15 +102,15 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
 }
 
 void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows,
-                   Progress& progress) {
+                   Observer& observer) {
     if (!cachesim::no_time_note(gpu).empty()) {
         for (QualityRow& row : rows) row.timing = {std::nan(""), std::nullopt};
-        progress.expect("replay", Work::timed_replay, 0);
+        observer.expect("replay", Work::timed_replay, 0);
         return;
     }
     std::vector<std::unique_ptr<tracer::Capture>> captures;
     for (const QualityRow& row : rows) captures.push_back(std::make_unique<tracer::Capture>(scene, row.settings));
-    const auto series = replay_timed(sources_of(captures), {gpu}, progress);
+    const auto series = replay_timed(sources_of(captures), {gpu}, observer);
     std::vector<cachesim::Sums> cycles(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) {
         double seconds = 0, samples = 0;
@@ -130,7 +128,7 @@ void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu,
 }
 
 void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Reference& reference,
-                          const QualityRequest& request, std::vector<QualityRow>& rows, Progress& progress) {
+                          const QualityRequest& request, std::vector<QualityRow>& rows, Observer& observer) {
     std::vector<tracer::CaptureSettings> cases;
     std::uint64_t paths = 0;
     for (const QualityRow& row : rows) {
@@ -139,7 +137,7 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
         cases.push_back(with_spp(row.settings, static_cast<std::uint64_t>(std::clamp(spp, 1.0, 0x1p32))));
         if (cases.back().strategy.parameters.spp != row.spp()) paths += request.repeats * paths_of(cases.back());
     }
-    const auto stage = progress.begin("equal time", paths, "paths");
+    const Stage stage(observer, "equal time", paths, "paths");
     Renderer renderer(scene, reference, request, stage);
     for (std::size_t r = 0; r < rows.size(); ++r) {
         QualityRow::EqualTime& same = rows[r].equal_time.emplace(QualityRow::EqualTime{});
@@ -157,13 +155,13 @@ std::uint64_t paths_of(const tracer::ReferenceSettings& s) {
     return std::uint64_t{s.width} * s.height * ((s.spp + 1) / 2 * 2);
 }
 
-void advise_kept(const std::string& path) {
-    advise_if_interrupted(fmt::format("the reference {} is kept: the same command starts from it", path));
+void advise_kept(const std::string& path, Observer& observer) {
+    observer.resumable(fmt::format("the reference {} is kept: the same command starts from it", path));
 }
 
 tracer::Reference render_new(const tracer::PreparedScene& scene, const tracer::ReferenceSettings& settings,
-                             Progress& progress) {
-    const auto stage = progress.begin("reference", paths_of(settings), "paths");
+                             Observer& observer) {
+    const Stage stage(observer, "reference", paths_of(settings), "paths");
     return tracer::render_reference(scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
 }
 
@@ -190,7 +188,7 @@ void check(const QualityRequest& request) {
 }
 
 std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, const tracer::Reference& reference,
-                                        const QualityRequest& request, Progress& progress) {
+                                        const QualityRequest& request, Observer& observer) {
     // A picture of each seed, one of each case, perhaps another at equal time.
     const std::uint64_t pictures = request.repeats + (request.equal_time ? 2 : 1) * request.cases.size();
     const auto& mean = reference.mean;
@@ -203,51 +201,51 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
         row.parameters = tracer::SamplingStrategy(c.strategy, dimensions_of(c)).parameters();
     }
     find_baselines(request.baseline, rows);
-    render_cases(scene, reference, request, rows, progress);
+    render_cases(scene, reference, request, rows, observer);
     for (QualityRow& row : rows)
         if (row.baseline) row.ratio = tracer::rmse_ratio(row.errors, rows[*row.baseline].errors);
     if (request.gpu) {
-        predict_times(scene, *request.gpu, rows, progress);
+        predict_times(scene, *request.gpu, rows, observer);
         if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())
-            render_at_equal_time(scene, reference, request, rows, progress);
+            render_at_equal_time(scene, reference, request, rows, observer);
     }
     return rows;
 }
 
-void expect_stages(Progress& progress, const QualityRequest& request, double reference) {
+void expect_stages(Observer& observer, const QualityRequest& request, double reference) {
     const double pictures = render_cost(paths_of(request), request.cases.front().paths.bounces);
-    progress.expect("reference", Work::render, reference);
-    progress.expect("strategies", Work::render, pictures);
+    observer.expect("reference", Work::render, reference);
+    observer.expect("strategies", Work::render, pictures);
     double times = 0;
     for (const auto& c : request.cases) times += trace_cost(c) + replay_cost(c, true);
-    if (request.gpu) progress.expect("replay", Work::timed_replay, times);
-    if (request.gpu && request.equal_time) progress.expect("equal time", Work::render, pictures);
+    if (request.gpu) observer.expect("replay", Work::timed_replay, times);
+    if (request.gpu && request.equal_time) observer.expect("equal time", Work::render, pictures);
 }
 
 tracer::Reference find_reference(const tracer::PreparedScene& scene, const tracer::ReferenceSettings& settings,
                                  const std::string& file, std::string& path, Deliveries& deliveries,
-                                 Progress& progress) {
+                                 Observer& observer) {
     const std::string key = tracer::reference_key(scene, settings);
     path = file.empty() ? tracer::cached_reference_path(key) : file;
     std::error_code error;
-    if (file.empty() && !path.empty()) warn_of_unfinished(path);
+    if (file.empty() && !path.empty()) warn_of_unfinished(path, observer.warning());
     if (!path.empty() && std::filesystem::exists(path, error)) {
         const auto read = [&] {
             tracer::Reference reference = tracer::read_reference(path, key, {settings.width, settings.height});
-            progress.expect("reference", Work::render, 0);
-            advise_kept(path);
+            observer.expect("reference", Work::render, 0);
+            advise_kept(path, observer);
             return reference;
         };
         if (!file.empty()) return read();
         try {
             return read();
         } catch (const Error& e) {
-            warn(fmt::format("cached reference rendered again: {}", e.what()));
+            observer.warn(fmt::format("cached reference rendered again: {}", e.what()));
         }
     }
-    tracer::Reference reference = render_new(scene, settings, progress);
+    tracer::Reference reference = render_new(scene, settings, observer);
     if (path.empty()) {
-        warn("the reference is not kept: neither XDG_CACHE_HOME nor HOME is set");
+        observer.warn("the reference is not kept: neither XDG_CACHE_HOME nor HOME is set");
         return reference;
     }
     if (file.empty()) std::filesystem::create_directories(std::filesystem::path(path).parent_path(), error);
@@ -262,11 +260,11 @@ tracer::Reference find_reference(const tracer::PreparedScene& scene, const trace
         try {
             keep();
         } catch (const Error& e) {
-            warn(fmt::format("the reference is not kept: {}", e.what()));
+            observer.warn(fmt::format("the reference is not kept: {}", e.what()));
         }
     }
     if (kept)
-        advise_kept(path);
+        advise_kept(path, observer);
     else
         path.clear();
     return reference;

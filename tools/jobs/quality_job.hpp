@@ -9,8 +9,8 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/report.hpp"
-#include "tools/program/outputs.hpp"
-#include "tools/program/progress.hpp"
+#include "tools/jobs/observer.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/quality/error_measures.hpp"
@@ -68,15 +68,15 @@ struct QualityRow {
 void check(const QualityRequest&);
 
 std::vector<QualityRow> measure_quality(const tracer::PreparedScene&, const tracer::Reference&, const QualityRequest&,
-                                        Progress&);
+                                        Observer&);
 
-/// Tells `progress` what find_reference() and measure_quality() will take; `reference`: seconds for a new one.
-void expect_stages(Progress&, const QualityRequest&, double reference);
+/// Tells `observer` what find_reference() and measure_quality() will take; `reference`: seconds for a new one.
+void expect_stages(Observer&, const QualityRequest&, double reference);
 
 /// From `file` if it is given and exists, else from the cache, else rendered and kept in that place. A damaged or
 /// different file in the cache is replaced, with a warning; one that the user named is refused (Error). `path`: where
 /// it lies now, empty if nowhere. A `file` that cannot be written is a failed delivery.
 tracer::Reference find_reference(const tracer::PreparedScene&, const tracer::ReferenceSettings&,
-                                 const std::string& file, std::string& path, Deliveries&, Progress&);
+                                 const std::string& file, std::string& path, Deliveries&, Observer&);
 
 }  // namespace raycache::tools

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/jobs/outputs.hpp"
 #include "tools/jobs/quality_report.hpp"
-#include "tools/program/outputs.hpp"
 
 namespace raycache::tools {
 

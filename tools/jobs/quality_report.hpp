@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/jobs/quality_job.hpp"
-#include "tools/program/json_output.hpp"
+#include "tools/jobs/subject.hpp"
 #include "tracer/quality/sweep_rule.hpp"
 
 namespace raycache::tools {
@@ -19,7 +19,7 @@ struct QualityReport {
     tracer::Image reference;
     std::vector<QualityRow> rows;
     std::vector<std::string> notes;
-    JsonSubject subject;
+    Subject subject;
 };
 
 /// Which mu a sweep advises, and what it accepted.

@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "cachesim/replay/replay.hpp"
-#include "tools/program/console.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -26,7 +25,7 @@ double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Head
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
 std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                                Progress& progress, const MakeReplay& make_replay) {
+                                Observer& observer, const MakeReplay& make_replay) {
     std::vector<Series> series;
     std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
     std::uint64_t warps = 0;
@@ -52,7 +51,7 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
     }
 
     constexpr std::uint64_t parts = 100;  // of a warp's work
-    const auto stage = progress.begin("replay", parts * warps, "rays");
+    const Stage stage(observer, "replay", parts * warps, "rays");
     const auto run_task = [&](std::size_t task) {
         const auto [s, launch] = tasks[task];
         const traces::Header& header = *sources[s].header;
@@ -112,27 +111,27 @@ struct BothSeries : cachesim::Series {
 }  // namespace
 
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                                     Progress& progress) {
-    return replay_with<cachesim::Series>(sources, gpus, progress,
+                                     Observer& observer) {
+    return replay_with<cachesim::Series>(sources, gpus, observer,
                                          [](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
                                             std::uint32_t sample) { return cachesim::Replay(gpu, regions, sample); });
 }
 
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>& sources,
-                                                const std::vector<cachesim::Gpu>& gpus, Progress& progress,
+                                                const std::vector<cachesim::Gpu>& gpus, Observer& observer,
                                                 const cachesim::Idealised& ideal) {
     return replay_with<cachesim::TimedSeries>(
-        sources, gpus, progress,
+        sources, gpus, observer,
         [&](const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample) {
             return cachesim::TimedReplay(gpu, regions, sample, ideal);
         });
 }
 
 Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                  Progress& progress) {
+                  Observer& observer) {
     Predicted all;
     for (BothSeries& both :
-         replay_with<BothSeries>(sources, gpus, progress,
+         replay_with<BothSeries>(sources, gpus, observer,
                                  [](const cachesim::Gpu&gpu, const std::vector<traces::Region>&regions,
                                     std::uint32_t sample) { return BothReplays(gpu, regions, sample); })) {
         cachesim::Series& counted = all.traffic.emplace_back(both);

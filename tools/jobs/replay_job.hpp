@@ -9,23 +9,23 @@
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/jobs/launch_source.hpp"
-#include "tools/program/progress.hpp"
+#include "tools/jobs/observer.hpp"
 
 namespace raycache::tools {
 
-/// One series per source and GPU, sources first. The stage of the progress is "replay". Throws Error as traces::Reader
+/// One series per source and GPU, sources first. The stage of the observer is "replay". Throws Error as traces::Reader
 /// does.
-std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Progress&);
+std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);
 
 /// Both replays of the same warps, series by series in the same order.
 struct Predicted {
     std::vector<cachesim::TimedSeries> times;
     std::vector<cachesim::Series> traffic;
 };
-Predicted predict(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Progress&);
+Predicted predict(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);
 
 /// In time alone.
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
-                                                Progress&, const cachesim::Idealised& = {});
+                                                Observer&, const cachesim::Idealised& = {});
 
 }  // namespace raycache::tools

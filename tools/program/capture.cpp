@@ -21,19 +21,19 @@ struct Options {
     std::uint64_t spp = 64;
 };
 
-Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     const tracer::CaptureSettings settings = o->sampling.capture(o->scene, o->sequence, o->decorrelation, o->spp);
     return [o, command, settings] {
         warn_of_settings(*command, {&settings, 1});
-        check_outputs({o->output});
+        check_outputs({o->output}, warn);
         advise_if_interrupted("a capture cannot go on where it ended: run the same command again");
         const auto limit = o->threads.apply();
         Progress progress("capture");
         progress.expect("trace", Work::trace, trace_cost(settings));
         const auto scene = o->scene.prepare({o->output}, progress);
         const tracer::Capture capture(*scene, settings);
-        const auto stage = progress.begin(
-            "trace", std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(), "rays");
+        const Stage stage(progress, "trace",
+                          std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(), "rays");
         tracer::write_capture(capture, o->output,
                               [&](std::uint64_t warps, std::uint64_t rays) { stage.add(warps, rays); });
     };

@@ -166,7 +166,7 @@ Option* Command::find_option(const std::string& name) const {
     return nullptr;
 }
 
-void Command::callback(Job run) {
+void Command::callback(Action run) {
     plan_ = [run = std::move(run)] { return run; };
 }
 

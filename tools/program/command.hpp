@@ -19,7 +19,7 @@ namespace raycache::tools {
 std::vector<std::string> split(const std::string& text, char at);
 
 /// What a command line asks for, checked and ready to run.
-using Job = std::function<void()>;
+using Action = std::function<void()>;
 
 class Option {
 public:
@@ -115,16 +115,16 @@ public:
     void examples(std::vector<std::string> lines) { examples_ = std::move(lines); }
 
     /// What the command line asks for, from the options read: everything is checked that needs no scene and no trace.
-    void plan(std::function<Job()> make) { plan_ = std::move(make); }
+    void plan(std::function<Action()> make) { plan_ = std::move(make); }
     /// plan() for a command without settings to check.
-    void callback(Job run);
+    void callback(Action run);
 
     const std::string& name() const { return name_; }
     bool is_hidden() const { return hidden_; }
     const std::string& description() const { return description_; }
     const std::vector<std::unique_ptr<Option>>& options() const { return options_; }
     const std::vector<std::string>& example_lines() const { return examples_; }
-    Job make_job() const { return plan_(); }
+    Action make_action() const { return plan_(); }
 
 private:
     Option* add(const std::string& names, const std::string& help);
@@ -133,7 +133,7 @@ private:
     bool about_scene_ = false, hidden_ = false;
     std::vector<std::unique_ptr<Option>> options_;
     std::vector<std::string> examples_;
-    std::function<Job()> plan_;
+    std::function<Action()> plan_;
 };
 
 // ---

@@ -31,12 +31,12 @@ struct Options {
     ThreadOptions threads;
 };
 
-Job plan_traces(const std::shared_ptr<const Options>& o, const Command* command,
-                const std::vector<std::string>& traces) {
+Action plan_traces(const std::shared_ptr<const Options>& o, const Command* command,
+                   const std::vector<std::string>& traces) {
     const auto gpus = o->report.load_gpus(traces);
     return [o, command, traces, gpus] {
         for (const std::string& line : idle_on_traces(*command)) warn(line);
-        check_outputs(o->report.outputs());
+        check_outputs(o->report.outputs(), warn);
         const auto limit = o->threads.apply();
         Progress progress("compare");
         const TraceFiles files(traces);
@@ -65,12 +65,12 @@ std::vector<tracer::CaptureSettings> settings_of(const Options& o) {
 }
 
 /// Fused: no files between capture and replay.
-Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan_scene(const std::shared_ptr<const Options>& o, const Command* command) {
     const auto gpus = o->report.load_gpus({});
     const std::vector<tracer::CaptureSettings> settings = settings_of(*o);
     return [o, command, gpus, settings] {
         warn_of_settings(*command, settings);
-        check_outputs(o->report.outputs());
+        check_outputs(o->report.outputs(), warn);
         const auto limit = o->threads.apply();
         advise_if_interrupted(
             "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "

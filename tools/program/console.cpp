@@ -46,12 +46,12 @@ constexpr const char* wipe = "\r\x1b[K";
 
 }  // namespace
 
-std::string program_name() { return "raycache " RAYCACHE_VERSION; }
-
 void warn(const std::string& message) { say(fmt::format("raycache: warning: {}\n", message_line(message))); }
 
+void say_failure(const std::string& message) { say(fmt::format("raycache: error: {}\n", message_line(message))); }
+
 int fail(const std::string& message, int exit_code) {
-    say(fmt::format("raycache: error: {}\n", message_line(message)));
+    say_failure(message);
     return exit_code;
 }
 

@@ -6,14 +6,14 @@
 
 namespace raycache::tools {
 
-/// "raycache 0.1.0"
-std::string program_name();
-
 /// Prints "raycache: warning: …".
 void warn(const std::string& message);
 
 /// Prints "raycache: error: …" on one line and returns the exit code.
 int fail(const std::string& message, int exit_code);
+
+/// The same without an exit code: one of several failures.
+void say_failure(const std::string& message);
 
 /// Prints "raycache: wrote FILE, SIZE".
 void say_written(const std::string& path, std::uint64_t bytes);

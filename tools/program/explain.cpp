@@ -54,9 +54,9 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
     const Explained done = explain(request, progress);
     const cachesim::Explanation& e = done.explanation;
     Deliveries deliveries;
-    JsonSubject subject{{gpu}, {}};
+    Subject subject{{gpu_json(gpu)}, {}};
     for (std::size_t i = 0; i < 2; ++i)
-        subject.traces.push_back(settings_json(*sources[i].header, o.scene.source.empty() ? names[i] : ""));
+        subject.traces.push_back(trace_json(*sources[i].header, o.scene.source.empty() ? names[i] : ""));
     deliveries.attempt([&] {
         print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e, o.width.columns()));
     });
@@ -66,10 +66,10 @@ void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::ve
             fmt::format("{}, N {}, {}, GPU {}", e.scene, e.spp, samples_text(e.base.launches.size()), e.gpu),
             make_heat_map(e.base.name, *sources[0].header, done.costs[0], gpu),
             make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu), deliveries);
-    deliveries.finish();
+    deliveries.finish(say_failure);
 }
 
-Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu) {
+Action plan_scene(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu) {
     if (o->strategies.size() != 2)
         throw UsageError(fmt::format("--strategy '{}': expected two names, BASE,OTHER, found {}",
                                      fmt::join(o->strategies, ","), o->strategies.size()));
@@ -78,7 +78,7 @@ Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command, 
         settings.push_back(o->sampling.capture(o->scene, o->sequence, strategy, o->spp));
     return [o, command, gpu, settings] {
         warn_of_settings(*command, settings);
-        check_outputs(heat_map_files(o->heat_map));
+        check_outputs(heat_map_files(o->heat_map), warn);
         const auto limit = o->threads.apply();
         Progress progress("explain");
         double seconds = 0;
@@ -91,15 +91,15 @@ Job plan_scene(const std::shared_ptr<const Options>& o, const Command* command, 
     };
 }
 
-Job plan_traces(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu,
-                const std::vector<std::string>& traces) {
+Action plan_traces(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu,
+                   const std::vector<std::string>& traces) {
     if (traces.size() != 2)
         throw UsageError(
             fmt::format("{} trace file{}; expected two: BASE and OTHER", traces.size(), traces.size() == 1 ? "" : "s"));
     refuse_overwriting(traces, heat_map_files(o->heat_map));
     return [o, command, gpu, traces] {
         for (const std::string& line : idle_on_traces(*command)) warn(line);
-        check_outputs(heat_map_files(o->heat_map));
+        check_outputs(heat_map_files(o->heat_map), warn);
         const auto limit = o->threads.apply();
         Progress progress("explain");
         const TraceFiles files(traces);
@@ -107,7 +107,7 @@ Job plan_traces(const std::shared_ptr<const Options>& o, const Command* command,
     };
 }
 
-Job plan(const std::shared_ptr<Options>& o, const Command& command) {
+Action plan(const std::shared_ptr<Options>& o, const Command& command) {
     const Inputs inputs = o->inputs.sorted(command);
     o->scene.source = inputs.scene;
     if (!o->heat_map.empty()) check_heat_map_name(o->heat_map);

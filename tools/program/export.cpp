@@ -5,10 +5,10 @@
 #include "cachesim/replay/replay.hpp"
 #include "tools/jobs/export_accel_sim.hpp"
 #include "tools/jobs/launch_source.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/gpu_options.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/progress.hpp"
 #include "traces/error.hpp"
@@ -92,14 +92,14 @@ void export_sectors(const Options& o, const cachesim::Gpu& gpu, const cachesim::
     refuse_wavefront(header, o.trace, "export");
     const std::uint32_t launch = choose_launch(o, header);
 
-    check_outputs({o.output});
+    check_outputs({o.output}, warn);
     traces::OutputFile file(o.output);
     cachesim::SectorStream stream(choice, format, gpu.l1().sector_bytes,
                                   [&](std::string_view piece) { file.write(piece); });
     cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
     replay.observe(stream);
     Progress progress("export");
-    const auto stage = progress.begin("replay", header.warps_per_launch, "warps");
+    const Stage stage(progress, "replay", header.warps_per_launch, "warps");
     traces::read_launch(reader, launch, [&](traces::WarpTrace&& warp) {
         replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
         stage.add(1, 1);
@@ -113,11 +113,12 @@ void export_sectors(const Options& o, const cachesim::Gpu& gpu, const cachesim::
 void export_instructions(const Options& o) {
     const traces::Reader reader(o.trace);
     refuse_wavefront(reader.header(), o.trace, "export");
-    export_accel_sim(reader, choose_launch(o, reader.header()), o.traceg, o.output);
+    Progress progress("export");
+    export_accel_sim(reader, choose_launch(o, reader.header()), o.traceg, o.output, progress);
     warn_of_others(o, reader.header());
 }
 
-Job plan(const std::shared_ptr<const Options>& o) {
+Action plan(const std::shared_ptr<const Options>& o) {
     if (o->format == "accel-sim") {
         if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->level != "l1")
             throw UsageError(

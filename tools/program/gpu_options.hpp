@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "tools/program/command.hpp"
-#include "tools/program/outputs.hpp"
 
 namespace raycache::tools {
 

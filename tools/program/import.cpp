@@ -1,9 +1,10 @@
 // raycache import: a trace of another tool -> trace file.
 #include <fmt/format.h>
 
+#include "tools/jobs/outputs.hpp"
+#include "tools/jobs/version.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/progress.hpp"
 #include "traces/accelsim/import.hpp"
@@ -20,18 +21,18 @@ struct Options {
 
 void run(const Options& o) {
     refuse_overwriting({o.input}, {o.output});
-    check_outputs({o.output});
+    check_outputs({o.output}, warn);
     Progress progress("import");
-    const auto stage = progress.begin("read");
+    const Stage stage(progress, "read");
     if (traces::looks_like_rtwarp(o.input)) {
         if (o.fuse)
             throw UsageError("--fuse: expected an Accel-Sim trace, found an RTWARP01 trace, whose objects are whole");
-        traces::import_rtwarp(o.input, o.output, program_name(), fmt::format("raycache import {}", o.input));
+        traces::import_rtwarp(o.input, o.output, program_name, fmt::format("raycache import {}", o.input));
         return;
     }
     traces::ImportSettings settings;
     settings.fuse = o.fuse;
-    settings.program = program_name();
+    settings.program = program_name;
     settings.command = fmt::format("raycache import {}{}", o.input, o.fuse ? " --fuse" : "");
     const traces::TracegKernel kernel = traces::import_traceg(o.input, o.output, settings);
     if (!kernel.left_out.empty()) {

@@ -100,7 +100,7 @@ void run(const Options& o) {
         totals.rays += block.rays;
     }
     if (!o.json) return print(as_text(reader, totals));
-    print(o.json.document(json_text(as_json(reader, totals)), {{}, {settings_json(reader.header(), o.path)}}));
+    print(o.json.document(json_text(as_json(reader, totals)), {{}, {trace_json(reader.header(), o.path)}}));
 }
 
 }  // namespace

@@ -36,13 +36,8 @@ bool is_a_name(const std::string& key) {
     return contains(list, key);
 }
 
-Json value_of(const std::string& text, bool name) {
-    if (!name && !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos) {
-        Json number = Json::parse(text, nullptr, false);
-        if (number.is_number()) return number;
-    }
-    return text;
-}
+/// A name stays one where it reads as a number.
+Json value_of(const std::string& text, bool name) { return name ? Json(text) : value_json(text); }
 
 /// Given, else the default; a list for options that take one.
 Json value_of(const OptionView& option, const std::string& key) {
@@ -87,16 +82,6 @@ std::string command_line(const CommandView& command) {
     return "raycache " + command.name + names + options;
 }
 
-Json gpu_json(const cachesim::Gpu& gpu) {
-    Json out{{"name", gpu.name}, {"description", gpu.description}, {"changes", Json::array()}};
-    for (const auto& [key, value] : gpu.changes)
-        out["changes"].push_back({{"key", key}, {"value", value_of(value, false)}});
-    out.update({{"sms", gpu.sms}, {"warps_per_sm", gpu.warps_per_sm}});
-    for (std::size_t i = 0; i < gpu.levels.size(); ++i) out[fmt::format("l{}_bytes", i + 1)] = gpu.levels[i].bytes();
-    out.update({{"line_bytes", gpu.l1().line_bytes}, {"sector_bytes", gpu.l1().sector_bytes}});
-    return out;
-}
-
 }  // namespace
 
 void JsonOption::add(Command& command) {
@@ -104,7 +89,7 @@ void JsonOption::add(Command& command) {
     command.add_flag("--json", asked_, "print JSON (docs/json.md)");
 }
 
-std::string JsonOption::document(const std::string& report, const JsonSubject& subject) const {
+std::string JsonOption::document(const std::string& report, const Subject& subject) const {
     const CommandView command = view_of(*command_);
     Json out{{"schema_version", json_schema_version}, {"program", "raycache"},
              {"version", RAYCACHE_VERSION},           {"command", command.name},
@@ -114,8 +99,7 @@ std::string JsonOption::document(const std::string& report, const JsonSubject& s
         // A positional argument and an option of one name are two ways to say the same.
         if (!out["settings"].contains(key) || option.is_given) out["settings"][key] = std::move(value);
     });
-    if (!subject.gpus.empty())
-        for (const cachesim::Gpu& gpu : subject.gpus) out["gpus"].push_back(gpu_json(gpu));
+    if (!subject.gpus.empty()) out["gpus"] = subject.gpus;
     if (!subject.traces.empty()) out["traces"] = subject.traces;
     const Json body = Json::parse(report);
     for (const auto& [key, value] : body.items()) {
@@ -124,40 +108,5 @@ std::string JsonOption::document(const std::string& report, const JsonSubject& s
     }
     return json_text(out);
 }
-
-Json settings_json(const traces::Header& header, const std::string& file) {
-    const traces::Provenance& p = header.provenance;
-    Json out{{"file", file.empty() ? Json(nullptr) : Json(file)},
-             {"program", p.program},
-             {"command_line", p.command},
-             {"scene", p.scene},
-             {"scene_hash", fmt::format("{:016x}", p.scene_hash)},
-             {"camera", p.camera},
-             {"strategy", p.decorrelation},
-             {"sequence", p.sequence},
-             {"spp", p.spp},
-             {"parameters", p.parameters}};
-    // "K=2.5 s=2 mu=0.3125": each number also under a key of its own.
-    for (const std::string& part : split(p.parameters, ' ')) {
-        const std::size_t sign = part.find('=');
-        if (sign == std::string::npos || sign == 0) continue;
-        const Json value = value_of(part.substr(sign + 1), false);
-        if (const std::string key = snake_case(part.substr(0, sign)); value.is_number() && !out.contains(key))
-            out[key] = value;
-    }
-    out.update({{"seed", p.seed},
-                {"resolution", fmt::format("{}x{}", p.width, p.height)},
-                {"bounces", p.bounces},
-                {"thread_map", p.thread_map},
-                {"layout", p.layout},
-                {"execution", p.execution},
-                {"order", p.order},
-                {"kernels_per_launch", header.kernels_per_launch},
-                {"warps_per_launch", header.warps_per_launch},
-                {"samples", header.launches}});
-    return out;
-}
-
-std::string json_text(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n'; }
 
 }  // namespace raycache::tools

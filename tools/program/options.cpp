@@ -13,6 +13,7 @@
 #include <limits>
 #include <thread>
 #include "tools/jobs/costs.hpp"
+#include "tools/jobs/version.hpp"
 #include "tools/program/console.hpp"
 
 #include "tools/program/console.hpp"
@@ -154,7 +155,7 @@ std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare(const FileNames& ou
     constexpr std::uint64_t usual_triangles = 300000;
     progress.expect("load", Work::prepare,
                     unknown ? load_cost(0, detail != 0 ? detail : usual_triangles) : load_cost(bytes, bytes / 100));
-    const auto stage = progress.begin("load");
+    const Stage stage(progress, "load");
     tracer::SceneRequest request;
     request.source = source;
     request.detail = detail;
@@ -357,7 +358,7 @@ tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, cons
     settings.trace_samples = trace_samples;
     const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
     settings.thread_map = tracer::thread_map_from(thread_map.empty() ? own_map : thread_map);
-    settings.program = program_name();
+    settings.program = program_name;
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{} --bounces {}{} "
         "--thread-map {}{} --seed {}{}",

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/jobs/outputs.hpp"
 #include "tools/program/command.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/progress.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "tools/jobs/version.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/help.hpp"
@@ -151,10 +152,10 @@ Command* Program::add_subcommand(const std::string& name, const std::string& des
 std::string Program::help() const { return help_text(commands_); }
 std::string Program::help(const Command& command) const { return help_text(command); }
 
-Job Program::parse(const std::vector<std::string>& words) {
+Action Program::parse(const std::vector<std::string>& words) {
     CLI::App app;
     app.allow_extras();
-    app.set_version_flag("--version", program_name());
+    app.set_version_flag("--version", program_name);
     Typed typed;
     std::map<const Command*, CLI::App*> declared;
     for (const auto& command : commands_) {
@@ -174,7 +175,7 @@ Job Program::parse(const std::vector<std::string>& words) {
         find_chosen();
         return [text = chosen ? help(*chosen) : help()] { print(text); };
     } catch (const CLI::CallForVersion&) {
-        return [] { print(program_name() + "\n"); };
+        return [] { print(std::string(program_name) + "\n"); };
     } catch (const CLI::ArgumentMismatch& e) {
         const std::string text = e.what();  // "NAME: 1 required …"
         throw UsageError(text.substr(0, text.find(':')) + ": expected a value, found nothing");
@@ -195,7 +196,7 @@ Job Program::parse(const std::vector<std::string>& words) {
     for (const auto& option : chosen->options())
         if (const auto found = typed.find(option.get()); found != typed.end()) option->read(found->second);
     check_together(*chosen);
-    return chosen->make_job();
+    return chosen->make_action();
 }
 
 }  // namespace raycache::tools

@@ -16,7 +16,7 @@ public:
     /// `words`: what follows the program's name on a command line. Returns what it asks for, without doing it:
     /// --help and --version are jobs, too. Throws UsageError. A Program reads one command line: options keep their
     /// values.
-    Job parse(const std::vector<std::string>& words);
+    Action parse(const std::vector<std::string>& words);
 
     Command* add_subcommand(const std::string& name, const std::string& description);
     const std::vector<std::unique_ptr<Command>>& commands() const { return commands_; }

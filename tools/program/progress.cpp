@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tools/program/console.hpp"
+#include "tools/program/interruption.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -79,7 +80,7 @@ void Progress::expect(const std::string& stage, Work work, double seconds) {
     state.expected = seconds;
 }
 
-Progress::Stage Progress::begin(const std::string& stage, std::uint64_t total, std::string unit) {
+void Progress::begin(const std::string& stage, std::uint64_t total, const std::string& unit) {
     const std::lock_guard lock(mutex_);
     current_ = find(stage);
     StageState& state = stages_[current_].state;
@@ -87,12 +88,11 @@ Progress::Stage Progress::begin(const std::string& stage, std::uint64_t total, s
     if (state.expected == 0 && total > 0) state = {Work::trace, 1, 0, 0, true};
     total_ = total;
     done_ = units_ = 0;
-    unit_ = std::move(unit);
+    unit_ = unit;
     stage_start_ = Clock::now();
-    return Stage(*this);
 }
 
-void Progress::add(std::uint64_t work, std::uint64_t units) {
+void Progress::advance(std::uint64_t work, std::uint64_t units) {
     const std::lock_guard lock(mutex_);
     done_ += work;
     units_ += units;
@@ -106,6 +106,10 @@ void Progress::end() {
     state.seconds = std::chrono::duration<double>(Clock::now() - stage_start_).count();
     current_ = none;
 }
+
+void Progress::warn(const std::string& line) { tools::warn(line); }
+
+void Progress::resumable(const std::string& advice) { advise_if_interrupted(advice); }
 
 std::string Progress::line(Clock::time_point now) {
     std::vector<StageState> states;

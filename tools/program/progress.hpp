@@ -1,4 +1,4 @@
-// How far a command is: one line on stderr, with one time left for all its stages.
+// What a job says, on stderr: warnings, and how far it is, in one line with one time left for all its stages.
 //
 // On a terminal the line is drawn over itself, ten times a second. Elsewhere a new one comes every 30 seconds, or every
 // $RAYCACHE_PROGRESS_SECONDS; none if that is 0.
@@ -12,38 +12,24 @@
 #include <thread>
 #include <vector>
 
+#include "tools/jobs/observer.hpp"
 #include "tools/program/time_left.hpp"
 
 namespace raycache::tools {
 
-class Progress {
+class Progress final : public Observer {
 public:
     /// `command`: what the line begins with, such as "quality". Where nothing is ever expected nor counted, the
     /// line says how long it has worked.
     explicit Progress(std::string command);
-    ~Progress();  ///< wipes the line
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    ~Progress() override;  ///< wipes the line
 
-    /// A stage is to come, or will take another time than was said before: `seconds`, by costs.hpp.
-    void expect(const std::string& stage, Work work, double seconds);
-
-    /// What runs now; over when the object goes. One at a time.
-    class Stage {
-    public:
-        ~Stage() { progress_.end(); }
-        Stage(const Stage&) = delete;
-        Stage& operator=(const Stage&) = delete;
-        /// Thread-safe. `units`: of what the rate counts.
-        void add(std::uint64_t work, std::uint64_t units) const { progress_.add(work, units); }
-
-    private:
-        friend class Progress;
-        explicit Stage(Progress& progress) : progress_(progress) {}
-        Progress& progress_;
-    };
-    /// `total` in units of work, 0 where none is counted; `unit` names what the rate counts, such as "rays".
-    [[nodiscard]] Stage begin(const std::string& stage, std::uint64_t total = 0, std::string unit = {});
+    void expect(const std::string& stage, Work work, double seconds) override;
+    void begin(const std::string& stage, std::uint64_t total, const std::string& unit) override;
+    void advance(std::uint64_t work, std::uint64_t units) override;
+    void end() override;
+    void warn(const std::string& line) override;         ///< as console.hpp does
+    void resumable(const std::string& advice) override;  ///< advise_if_interrupted()
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -51,8 +37,6 @@ private:
         std::string name;
         StageState state;
     };
-    void add(std::uint64_t work, std::uint64_t units);
-    void end();
     std::size_t find(const std::string& stage);
     std::string line(Clock::time_point now);
     void keep_saying();

@@ -21,7 +21,7 @@ struct Options {
     std::string output, crop;
 };
 
-Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     QualityRequest request;
     for (const std::string& sequence : o->sequences)
         for (const std::uint64_t spp : o->spp)
@@ -52,7 +52,7 @@ Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
                                   : to_text(report, o->common.width.columns()));
         });
         if (!o->output.empty()) write_quality_pictures(o->output, report, crop, deliveries);
-        deliveries.finish();
+        deliveries.finish(say_failure);
     };
 }
 

@@ -94,8 +94,8 @@ QualityReport QualityOptions::measure(const Command& command, QualityRequest req
     warn_of_settings(command, request.cases, {request.gpu.has_value(), "without --gpu no time is predicted"});
 
     std::error_code error;
-    check_outputs(outputs);
-    if (!std::filesystem::exists(reference_file, error)) check_outputs({reference_file});
+    check_outputs(outputs, warn);
+    if (!std::filesystem::exists(reference_file, error)) check_outputs({reference_file}, warn);
     const auto limit = threads.apply();
     const tracer::CaptureSettings& first = request.cases.front();
     expect_stages(progress, request,
@@ -108,7 +108,7 @@ QualityReport QualityOptions::measure(const Command& command, QualityRequest req
     result.scene = prepared->scene().name;
     result.baseline = request.baseline;
     result.gpu = request.gpu ? request.gpu->name : "";
-    if (request.gpu) result.subject.gpus = {*request.gpu};
+    if (request.gpu) result.subject.gpus = {gpu_json(*request.gpu)};
     result.reference_spp = reference_spp;
     result.repeats = repeats;
     result.clamp = clamp;

@@ -23,7 +23,7 @@ struct Options {
     std::optional<float> exposure, clamp;
 };
 
-Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     tracer::check_image_name(o->output);
     const Resolution size = parse_resolution(o->sampling.resolution);
     tracer::CaptureSettings one;
@@ -36,13 +36,13 @@ Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
     return [o, command, one] {
         warn_of_settings(*command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
         const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o->clamp};
-        check_outputs({o->output});
+        check_outputs({o->output}, warn);
         const auto limit = o->threads.apply();
         const std::uint64_t paths = std::uint64_t{settings.width} * settings.height * o->spp;
         Progress progress("render");
         progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
         const auto scene = o->scene.prepare({o->output}, progress);
-        const auto stage = progress.begin("render", paths, "paths");
+        const Stage stage(progress, "render", paths, "paths");
         const tracer::Image image =
             tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
         tracer::write_image(o->output, image, o->exposure ? *o->exposure : automatic_exposure(image));

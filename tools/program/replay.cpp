@@ -1,6 +1,7 @@
 // raycache replay: one trace through one or more GPUs.
 #include "tools/jobs/replay_job.hpp"
 #include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/report_options.hpp"
@@ -14,10 +15,10 @@ struct Options {
     ThreadOptions threads;
 };
 
-Job plan(const std::shared_ptr<const Options>& o) {
+Action plan(const std::shared_ptr<const Options>& o) {
     const auto gpus = o->report.load_gpus({o->path});
     return [o, gpus] {
-        check_outputs(o->report.outputs());
+        check_outputs(o->report.outputs(), warn);
         const auto limit = o->threads.apply();
         Progress progress("replay");
         const TraceFiles files({o->path});

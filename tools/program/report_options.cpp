@@ -32,7 +32,7 @@ std::string baseline_of(const std::vector<Series>& series, const std::string& as
 }
 
 template <class Report>
-void publish(const Report& report, const JsonSubject& subject, const ReportOptions& o) {
+void publish(const Report& report, const Subject& subject, const ReportOptions& o) {
     using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
     const auto text = [&] {
         if constexpr (requires { to_text(report, std::size_t{}); })
@@ -48,7 +48,7 @@ void publish(const Report& report, const JsonSubject& subject, const ReportOptio
         deliveries.attempt([&] { write_text(o.save + ".json", json()); });
         deliveries.attempt([&] { write_text(o.save + ".csv", to_csv(report)); });
     }
-    deliveries.finish();
+    deliveries.finish(say_failure);
 }
 
 }  // namespace
@@ -111,9 +111,10 @@ FileNames ReportOptions::outputs() const {
 
 void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
                                        const std::vector<cachesim::Gpu>& loaded, Progress& progress) const {
-    JsonSubject subject{loaded, {}};
+    Subject subject;
+    for (const cachesim::Gpu& gpu : loaded) subject.gpus.push_back(gpu_json(gpu));
     for (std::size_t i = 0; i < sources.size(); ++i)
-        subject.traces.push_back(settings_json(*sources[i].header, files.empty() ? "" : files[i]));
+        subject.traces.push_back(trace_json(*sources[i].header, files.empty() ? "" : files[i]));
     if (timed) {
         const Predicted all = predict(sources, loaded, progress);
         return publish(cachesim::make_timed_report(all.times, baseline_of(all.times, baseline), all.traffic), subject,

@@ -7,9 +7,9 @@
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/jobs/launch_source.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/json_output.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/progress.hpp"
 #include "tools/program/width_option.hpp"
 

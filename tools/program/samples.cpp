@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "tools/jobs/outputs.hpp"
 #include "tools/jobs/samples_picture.hpp"
 #include "tools/jobs/samples_tables.hpp"
 #include "tools/jobs/samples_union.hpp"
@@ -10,7 +11,6 @@
 #include "tools/program/idle_options.hpp"
 #include "tools/program/json_output.hpp"
 #include "tools/program/options.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/progress.hpp"
 #include "traces/error.hpp"
@@ -65,10 +65,10 @@ void write_figure2(const Options& o) {
 }
 
 void run(const Options& o, const Command& command) {
-    check_outputs({o.csv, o.picture, o.figure2});
+    check_outputs({o.csv, o.picture, o.figure2}, warn);
     const auto limit = o.threads.apply();
     Progress progress("samples");
-    const auto stage = progress.begin("points");
+    const Stage stage(progress, "points");
     const SampleUnion samples = make(o, o.strategy, "");
     tracer::CaptureSettings one;
     one.strategy = samples.strategy;
@@ -83,7 +83,7 @@ void run(const Options& o, const Command& command) {
             tracer::write_screen_image(o.picture, draw_samples(subject(o), {{title, &samples}}));
         });
     if (!o.figure2.empty()) deliveries.attempt([&] { write_figure2(o); });
-    deliveries.finish();
+    deliveries.finish(say_failure);
 }
 
 void run_table(const Options& o, const Command& command) {
@@ -91,12 +91,12 @@ void run_table(const Options& o, const Command& command) {
     for (const std::string& line : idle_besides(command, read, "a table has settings of its own")) warn(line);
     const auto limit = o.threads.apply();
     Progress progress("samples");
-    const auto stage = progress.begin("points");
+    const Stage stage(progress, "points");
     const SamplesTable table = make_samples_table(o.table);
     print(o.json ? o.json.document(table.json()) : table.text());
 }
 
-Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     if (!o->table.empty()) return [o, command] { run_table(*o, *command); };
     refuse_stdout("--csv", o->csv);
     check_picture_name("--picture", o->picture);

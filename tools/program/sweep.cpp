@@ -95,7 +95,7 @@ Recommendation recommend(const Options& o, const QualityReport& report) {
     return {advice_text(o, report, advice), advice, limits};
 }
 
-Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     tracer::DecorrelationSettings with_mu;
     with_mu.mu = 1;
     if (!tracer::find_decorrelation(o->swept).reads_parameter(tracer::Parameter::mu, with_mu))
@@ -130,7 +130,7 @@ Job plan(const std::shared_ptr<const Options>& o, const Command* command) {
                       : to_text(report, o->common.width.columns()) + "\n" +
                             cachesim::break_lines("recommendation: " + advice.text + "\n", cachesim::text_width, 2));
         });
-        deliveries.finish();
+        deliveries.finish(say_failure);
     };
 }
 

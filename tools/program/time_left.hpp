@@ -3,10 +3,9 @@
 
 #include <span>
 
-namespace raycache::tools {
+#include "tools/jobs/observer.hpp"
 
-/// Kinds of work. What one stage of a kind takes says what another of that kind will take.
-enum class Work { prepare, render, trace, replay, timed_replay };
+namespace raycache::tools {
 
 struct StageState {
     Work work = Work::prepare;

@@ -6,10 +6,10 @@
 
 #include "cachesim/report/table.hpp"
 #include "tools/jobs/costs.hpp"
+#include "tools/jobs/outputs.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/json_output.hpp"
-#include "tools/program/outputs.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/progress.hpp"
 #include "traces/printable.hpp"
@@ -26,12 +26,12 @@ struct Options {
 void run(const Options& o) {
     refuse_overwriting({o.path}, {o.recovered});
     refuse_stdout("--recover", o.recovered);
-    check_outputs({o.recovered});
+    check_outputs({o.recovered}, warn);
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(o.path, unknown);
     Progress progress("verify");
     if (!unknown) progress.expect("read", Work::prepare, read_cost(bytes));
-    const auto stage = progress.begin("read");
+    const Stage stage(progress, "read");
     nlohmann::ordered_json out;
     std::string text;
     if (o.recovered.empty()) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/jobs/observer.hpp"
+
 namespace raycache::tools {
 
 using FileNames = std::vector<std::string>;
@@ -17,20 +19,20 @@ void refuse_overwriting(const FileNames& inputs, const FileNames& outputs);
 void refuse_stdout(const char* option, const std::string& path);
 
 /// Before the work: throws Error if one of the outputs cannot be written (a folder that is missing or read-only, a
-/// named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a command; named pipes stay
+/// named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a process; named pipes stay
 /// open to its end.
-void check_outputs(const FileNames& outputs);
+void check_outputs(const FileNames& outputs, const Say& warn);
 
-/// Names files of that name that a killed run left unfinished.
-void warn_of_unfinished(const std::string& path);
+/// Warns of files of that name that a killed run left unfinished.
+void warn_of_unfinished(const std::string& path, const Say& warn);
 
 /// Things that are written one after the other. One that fails does not prevent the others.
 class Deliveries {
 public:
     /// Calls `deliver`; keeps the message of the Error it throws.
     void attempt(const std::function<void()>& deliver);
-    /// Throws Error if something failed: the last failure, after the others were printed.
-    void finish();
+    /// Throws Error if something failed: the last failure, after `say` was called with each of the others.
+    void finish(const Say& say);
 
 private:
     FileNames failures_;

@@ -1,4 +1,4 @@
-#include "tools/program/outputs.hpp"
+#include "tools/jobs/outputs.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "tools/program/console.hpp"
 #include "traces/error.hpp"
 #include "traces/input_pipe.hpp"
 #include "traces/output_file.hpp"
@@ -52,7 +51,7 @@ void refuse_stdout(const char* option, const std::string& path) {
         "{} -: expected the name of a file, found -, stdout, which is for the report; name a file", option));
 }
 
-void warn_of_unfinished(const std::string& path) {
+void warn_of_unfinished(const std::string& path, const Say& warn) {
     for (const std::string& name : traces::abandoned_partial_files(path)) {
         const bool trace = path.ends_with(".rct");
         warn(fmt::format("{}: left unfinished by a run that was killed; remove it{}", name,
@@ -61,7 +60,7 @@ void warn_of_unfinished(const std::string& path) {
     }
 }
 
-void check_outputs(const FileNames& outputs) {
+void check_outputs(const FileNames& outputs, const Say& warn) {
     for (const std::string& output : outputs) {
         if (output.empty()) continue;
         if (output == "-") {
@@ -70,7 +69,7 @@ void check_outputs(const FileNames& outputs) {
             traces::open_pipe_for_writing(output);  // stays open: its reader must not see the end before it has begun
         } else {
             const traces::OutputFile probe(output);
-            if (!traces::OutputFile::is_direct(output)) warn_of_unfinished(output);
+            if (!traces::OutputFile::is_direct(output)) warn_of_unfinished(output, warn);
         }
     }
 }
@@ -83,11 +82,11 @@ void Deliveries::attempt(const std::function<void()>& deliver) {
     }
 }
 
-void Deliveries::finish() {
+void Deliveries::finish(const Say& say) {
     if (failures_.empty()) return;
     const std::string last = std::move(failures_.back());
     failures_.pop_back();
-    for (const std::string& other : failures_) fail(other, 1);
+    for (const std::string& other : failures_) say(other);
     throw Error(last);
 }
 
