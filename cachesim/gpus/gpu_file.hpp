@@ -1,4 +1,4 @@
-// A GPU in TOML: docs/gpus.md has every key, its default and its meaning. A value is plain, or
+// A GPU in TOML: the keys are those of key_tables.hpp. A value is plain, or
 // { value = …, source = "…" }.
 #pragma once
 

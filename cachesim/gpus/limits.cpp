@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <bit>
 
-#include "cachesim/cache/registry.hpp"
+#include "cachesim/gpus/key_tables.hpp"
 
 namespace raycache::cachesim {
 
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;  // of a cache
 constexpr std::uint64_t most_lines = std::uint64_t{1} << 26;
 
 std::optional<GpuProblem> not_in(const std::string& key, std::uint64_t value, std::uint64_t low, std::uint64_t high) {
@@ -20,10 +20,65 @@ std::optional<GpuProblem> not_in(const std::string& key, std::uint64_t value, st
     return GpuProblem{key, fmt::format("expected {} to {}, found {}", low, high, value)};
 }
 
-std::optional<GpuProblem> not_a_power_of_two(const std::string& key, std::uint64_t value) {
-    if (std::has_single_bit(value)) return std::nullopt;
-    return GpuProblem{
-        key, fmt::format("expected a power of two, found {}; nearest below: {}", value, std::bit_floor(value))};
+/// Whether a member has a value that its row allows.
+template <class Struct>
+struct Check {
+    const std::string key;
+    const Struct& of;
+    bool may_be_initial;  ///< as the member is where a file lacks the key
+
+    std::optional<GpuProblem> whole(std::uint64_t found, const WholeRange& range) const {
+        if (!range.power_of_two || std::has_single_bit(found)) return not_in(key, found, range.low, range.high);
+        const bool few = range.high <= 32;
+        return GpuProblem{key, few ? fmt::format("expected {}, found {}", range_text(range), found)
+                                   : fmt::format("expected a power of two, found {}; nearest below: {}", found,
+                                                 std::bit_floor(found))};
+    }
+    template <class Integer>
+    std::optional<GpuProblem> operator()(const WholeValue<Struct, Integer>& v) const {
+        if (is_initial(v.member)) return std::nullopt;
+        return whole(of.*v.member, v.range);
+    }
+    std::optional<GpuProblem> operator()(const RealValue<Struct>& v) const {
+        const double found = of.*v.member;
+        if (is_initial(v.member) || (found >= v.low && found <= v.high)) return std::nullopt;
+        return GpuProblem{key, v.low > 0 ? fmt::format("expected {} to {}, found {}", v.low, v.high, found)
+                                         : fmt::format("expected at most {}, found {}", v.high, found)};
+    }
+    std::optional<GpuProblem> operator()(const TextValue<Struct>&) const { return std::nullopt; }
+    std::optional<GpuProblem> operator()(const NameValue<Struct>& v) const {
+        const auto names = v.names();
+        if (std::find(names.begin(), names.end(), of.*v.member) != names.end()) return std::nullopt;
+        return GpuProblem{key, fmt::format("expected one of: {}; found \"{}\"", fmt::join(names, ", "), of.*v.member)};
+    }
+    template <class Integer>
+    std::optional<GpuProblem> operator()(const ListValue<Struct, Integer>& v) const {
+        const auto& found = of.*v.member;
+        if (found.size() > v.most)
+            return GpuProblem{key, fmt::format("expected at most {} {}, found {}", v.most, v.what, found.size())};
+        for (const Integer number : found)
+            if (auto p = whole(number, v.each)) return p;
+        return std::nullopt;
+    }
+    std::optional<GpuProblem> operator()(const ChoiceValue<Struct>&) const { return std::nullopt; }
+
+private:
+    template <class Member>
+    bool is_initial(Member member) const {
+        static const Struct initial;
+        return may_be_initial && of.*member == initial.*member;
+    }
+};
+
+/// The first value that its row does not allow. `section`: "", "timing."
+template <class Struct>
+std::optional<GpuProblem> find_value_problem(std::span<const Key<Struct>> keys, const Struct& of,
+                                             const std::string& section) {
+    for (const Key<Struct>& key : keys) {
+        const Check<Struct> check{section + key.name, of, !key.absent.refused};
+        if (auto p = std::visit(check, key.value)) return p;
+    }
+    return std::nullopt;
 }
 
 bool has_polynomial(std::uint64_t count) { return count == 16 || count == 32 || count == 64; }
@@ -40,10 +95,8 @@ std::optional<GpuProblem> find_hash_problem(const CacheGeometry& cache, const st
                                                               "found {}; give one address mask for each bit of the set",
                                                               cache.sets, cache.index_masks.size())};
     if (cache.slices == 1) return std::nullopt;
-    if (cache.slice_hash != SliceHash::ipoly) {
-        if (auto p = not_a_power_of_two(level + ".interleave_bytes", cache.interleave_bytes)) return p;
+    if (cache.slice_hash != SliceHash::ipoly)
         return not_in(level + ".interleave_bytes", cache.interleave_bytes, cache.line_bytes, 1u << 30);
-    }
     if (!has_polynomial(cache.slices))
         return GpuProblem{level + ".slice_hash", fmt::format("expected 16, 32 or 64 slices for \"ipoly\", found {}; "
                                                              "choose \"modulo\" or \"xor_fold\"",
@@ -67,24 +120,15 @@ std::optional<GpuProblem> find_hash_problem(const CacheGeometry& cache, const st
 
 /// One level: `caches` caches of this geometry.
 std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::string& level, std::uint64_t caches) {
-    if (auto p = not_in(level + ".line_bytes", cache.line_bytes, 16, 4096)) return p;
-    if (auto p = not_in(level + ".sector_bytes", cache.sector_bytes, 4, 4096)) return p;
+    if (auto p = find_value_problem(level_keys(), cache, level + ".")) return p;
     if (cache.sector_bytes > cache.line_bytes)
         return GpuProblem{level + ".sector_bytes", fmt::format("expected at most the line's {} bytes, found {}",
                                                                cache.line_bytes, cache.sector_bytes)};
-    if (cache.line_bytes % cache.sector_bytes)
-        return GpuProblem{level + ".line_bytes", fmt::format("expected a multiple of the sector's {} bytes, found {}",
-                                                             cache.sector_bytes, cache.line_bytes)};
-    if (auto p = not_a_power_of_two(level + ".line_bytes", cache.line_bytes)) return p;
-    if (auto p = not_a_power_of_two(level + ".sector_bytes", cache.sector_bytes)) return p;
     if (cache.line_bytes / cache.sector_bytes > 32)
         return GpuProblem{level + ".sector_bytes",
                           fmt::format("expected at most 32 sectors per line, found {} ({} bytes / {} bytes); make "
                                       "sectors larger or lines smaller",
                                       cache.line_bytes / cache.sector_bytes, cache.line_bytes, cache.sector_bytes)};
-    if (auto p = not_in(level + ".sets", cache.sets, 1, most_bytes)) return p;
-    if (auto p = not_in(level + ".ways", cache.ways, 1, most_bytes)) return p;
-    if (auto p = not_in(level + ".slices", cache.slices, 1, 4096)) return p;
     if (cache.sets > most_bytes / cache.line_bytes / cache.ways / cache.slices)
         return GpuProblem{level + ".sets",
                           fmt::format("expected slices x sets x ways x line of at most 2^40 bytes, found "
@@ -95,43 +139,17 @@ std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::st
                           fmt::format("expected at most 2^26 lines in all {0} cache{1} together, found {2} x {3} x {4} "
                                       "in each; make the cache smaller",
                                       caches, caches == 1 ? "" : "s", cache.slices, cache.sets, cache.ways)};
-    if (cache.fill_bytes) {
-        if (auto p = not_a_power_of_two(level + ".fill_bytes", cache.fill_bytes)) return p;
+    if (cache.fill_bytes)
         if (auto p = not_in(level + ".fill_bytes", cache.fill_bytes, cache.sector_bytes, cache.line_bytes)) return p;
-    }
-    if (auto p = find_hash_problem(cache, level)) return p;
-    const auto policies = cache_policies();
-    if (std::find(policies.begin(), policies.end(), cache.policy) == policies.end())
-        return GpuProblem{level + ".policy",
-                          fmt::format("expected one of: {}; found \"{}\"", fmt::join(policies, ", "), cache.policy)};
-    return std::nullopt;
-}
-
-std::optional<GpuProblem> find_problem(const FrontEnd& front_end) {
-    if (auto p = not_a_power_of_two("front_end.load_bytes", front_end.load_bytes)) return p;
-    if (auto p = not_in("front_end.load_bytes", front_end.load_bytes, 4, 16)) return p;
-    for (const auto& [key, lanes] : {std::pair{"front_end.lanes_per_request_16", front_end.lanes_per_request_16},
-                                     std::pair{"front_end.lanes_per_request_8", front_end.lanes_per_request_8},
-                                     std::pair{"front_end.lanes_per_request_4", front_end.lanes_per_request_4}}) {
-        if (auto p = not_a_power_of_two(key, lanes)) return p;
-        if (auto p = not_in(key, lanes, 1, 32)) return p;
-    }
-    return std::nullopt;
+    return find_hash_problem(cache, level);
 }
 
 /// Open rows of DRAM.
 std::optional<GpuProblem> find_row_problem(const Timing& t) {
     const bool rows = !t.dram_bank_bits.empty();
-    if (t.dram_bank_bits.size() > 10)
-        return GpuProblem{"timing.dram_bank_bits",
-                          fmt::format("expected at most 10 address bits, found {}", t.dram_bank_bits.size())};
-    for (const std::uint32_t bit : t.dram_bank_bits)
-        if (auto p = not_in("timing.dram_bank_bits", bit, 0, 63)) return p;
-    if (auto p = not_in("timing.dram_row_bit", t.dram_row_bit, 0, 63)) return p;
     for (const auto& [key, cycles] : {std::pair{"timing.dram_rcd", t.dram_rcd}, std::pair{"timing.dram_rp", t.dram_rp},
                                       std::pair{"timing.dram_ras", t.dram_ras}, std::pair{"timing.dram_rc", t.dram_rc},
                                       std::pair{"timing.dram_rrd", t.dram_rrd}}) {
-        if (auto p = not_in(key, cycles, 0, 100'000)) return p;
         if (cycles && !rows)
             return GpuProblem{key,
                               "expected with the bits of a bank only; give dram_bank_bits, dram_row_bit and "
@@ -139,12 +157,11 @@ std::optional<GpuProblem> find_row_problem(const Timing& t) {
     }
     if (rows != (t.dram_mhz > 0))
         return GpuProblem{"timing.dram_mhz", "expected together with dram_bank_bits, found one of both"};
-    if (rows && (t.dram_mhz < 1 || t.dram_mhz > 1e5))
-        return GpuProblem{"timing.dram_mhz", fmt::format("expected 1 to 100000 MHz, found {}", t.dram_mhz)};
     return std::nullopt;
 }
 
 std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
+    if (auto p = find_value_problem(timing_keys(), t, "timing.")) return p;
     const std::uint32_t sector = gpu.l1().sector_bytes;
     // Slower, one sector would take longer than all that is worth waiting for.
     const double slowest = sector / 1e6;
@@ -156,43 +173,16 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
             return GpuProblem{key, fmt::format("expected at least {} bytes a cycle (10^6 cycles for a sector of {} "
                                                "bytes), found {}",
                                                slowest, sector, rate)};
-    if (t.clock_mhz > 1e5)
-        return GpuProblem{"timing.clock_mhz", fmt::format("expected at most 100000 MHz, found {}", t.clock_mhz)};
     if (const double rate = t.dram_gb_s * 1e3 / t.clock_mhz / t.dram_channels; rate < slowest)
         return GpuProblem{"timing.dram_gb_s",
                           fmt::format("expected at least {} bytes a cycle of each of {} channels, found {}; give more "
                                       "GB/s or fewer channels",
                                       slowest, t.dram_channels, rate)};
     if (auto p = find_row_problem(t)) return p;
-    if (auto p = not_in("timing.schedulers", t.schedulers, 1, 64)) return p;
-    if (auto p = not_in("timing.operand_collectors", t.operand_collectors, 0, 32)) return p;
     if (t.operand_collectors > 0 && t.l1_latency < 4)
         return GpuProblem{"timing.l1_latency", fmt::format("expected at least the 4 cycles from issue to the port "
                                                            "with operand_collectors, found {}",
                                                            t.l1_latency)};
-    if (auto p = not_in("timing.instruction_interval", t.instruction_interval, 1, 1000)) return p;
-    if (auto p = not_in("timing.accesses_in_flight", t.accesses_in_flight, 1, 64)) return p;
-    for (const auto& [key, count] :
-         {std::pair{"timing.load_queue", t.load_queue}, std::pair{"timing.l1_mshrs", t.l1_mshrs},
-          std::pair{"timing.l1_mshr_merges", t.l1_mshr_merges}, std::pair{"timing.l2_mshrs", t.l2_mshrs},
-          std::pair{"timing.l2_mshr_merges", t.l2_mshr_merges}})
-        if (auto p = not_in(key, count, 1, 65535)) return p;
-    if (auto p = not_in("timing.dependent_chains", t.dependent_chains, 1, 64)) return p;
-    if (auto p = not_a_power_of_two("timing.l1_banks", t.l1_banks)) return p;
-    if (auto p = not_in("timing.l1_banks", t.l1_banks, 1, 32)) return p;
-    if (auto p = not_in("timing.tags_per_cycle", t.tags_per_cycle, 1, 64)) return p;
-    if (auto p = not_in("timing.empty_request_cycles", t.empty_request_cycles, 0, 1000)) return p;
-    for (const auto& [key, cycles] :
-         {std::pair{"timing.launch_cycles", t.launch_cycles}, std::pair{"timing.l1_latency", t.l1_latency},
-          std::pair{"timing.l2_latency", t.l2_latency}, std::pair{"timing.l2_far_latency", t.l2_far_latency},
-          std::pair{"timing.l3_latency", t.l3_latency}, std::pair{"timing.dram_latency", t.dram_latency},
-          std::pair{"timing.instruction_latency", t.instruction_latency},
-          std::pair{"timing.node_instructions", t.node_instructions},
-          std::pair{"timing.triangle_instructions", t.triangle_instructions},
-          std::pair{"timing.texel_instructions", t.texel_instructions},
-          std::pair{"timing.leaf_instructions", t.leaf_instructions},
-          std::pair{"timing.shading_instructions", t.shading_instructions}})
-        if (auto p = not_in(key, cycles, 0, 100'000)) return p;
     const bool three = gpu.levels.size() == 3;
     if (three && (t.l3_mshrs == 0 || t.l3_mshr_merges == 0))
         return GpuProblem{"timing.l3_mshrs",
@@ -222,25 +212,18 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
     if (three && t.l2_partitions != 1)
         return GpuProblem{"timing.l2_partitions",
                           fmt::format("expected 1 where there is an L3, found {}", t.l2_partitions)};
-    if (auto p = not_in("timing.l2_partitions", t.l2_partitions, 1, gpu.levels.back().slices)) return p;
-    return not_in("timing.dram_channels", t.dram_channels, 1, 4096);
+    return not_in("timing.l2_partitions", t.l2_partitions, 1, gpu.levels.back().slices);
 }
 
 }  // namespace
 
 std::optional<GpuProblem> find_problem(const Gpu& gpu) {
-    if (auto p = not_in("sms", gpu.sms, 1, 4096)) return p;
-    if (auto p = not_in("warps_per_sm", gpu.warps_per_sm, 1, 1024)) return p;
+    if (auto p = find_value_problem(chip_keys(), gpu, "")) return p;
     if (gpu.max_warps_per_sm && gpu.warps_per_sm > gpu.max_warps_per_sm)
         return GpuProblem{"warps_per_sm", fmt::format("expected at most the {} that an SM holds (max_warps_per_sm), "
                                                       "found {}; make fewer resident",
                                                       gpu.max_warps_per_sm, gpu.warps_per_sm)};
-    if (auto p = not_in("warps_per_cta", gpu.warps_per_cta, 1, 64)) return p;
-    if (auto p = not_in("l1_per_sm", gpu.l1_per_sm, 1, 8)) return p;
-    if (gpu.simd_width != 1 && gpu.simd_width != 2 && gpu.simd_width != 4 && gpu.simd_width != 8 &&
-        gpu.simd_width != 16 && gpu.simd_width != 32)
-        return GpuProblem{"simd_width", fmt::format("expected 1, 2, 4, 8, 16 or 32, found {}", gpu.simd_width)};
-    if (auto p = find_problem(gpu.front_end)) return p;
+    if (auto p = find_value_problem(front_end_keys(), gpu.front_end, "front_end.")) return p;
     if (auto p = not_in("levels", gpu.levels.size(), 2, 3)) return p;
     const CacheGeometry& first = gpu.levels.front();
     for (std::size_t i = 0; i < gpu.levels.size(); ++i) {

@@ -13,11 +13,10 @@ struct GpuProblem {
     std::string message;  ///< "expected …, found …; remedy"
 };
 
-/// The first broken rule, if any:
-/// counts are positive; sms <= 4096, warps_per_sm <= 1024, warps_per_cta <= 64, l1_per_sm <= 8;
-/// line size a power of two from 16 to 4096 bytes; sector size a power of two from 4 bytes to the line size, at most 32
-/// sectors per line, both the same in L1 and L2; a cache has at most 2^40 bytes; all caches of a level together at most
-/// 2^26 lines (what fits a workstation's memory); the policy is known.
+/// The first broken rule, if any: of each value, those of its row in key_tables.hpp; of values together, such as these:
+/// sectors no larger than lines, at most 32 to a line, lines and sectors the same in all levels; a cache has at most
+/// 2^40 bytes, all caches of a level together at most 2^26 lines (what fits a workstation's memory); latencies grow
+/// from level to level.
 std::optional<GpuProblem> find_problem(const Gpu&);
 
 }  // namespace raycache::cachesim

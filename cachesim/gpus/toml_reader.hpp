@@ -9,7 +9,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -24,13 +23,6 @@
 #include <toml++/toml.h>
 
 namespace raycache::cachesim {
-
-/// A value's name in the file, and the C++ value that it stands for.
-template <class Enum>
-struct Choice {
-    const char* name;
-    Enum value;
-};
 
 class TomlReader {
 public:
@@ -90,19 +82,13 @@ public:
         Integer number(const std::string& key, bool zero = false) {
             return reader_->integer<Integer>(reader_->value(*table_, prefix_, key), prefix_ + key, zero);
         }
-        template <class Integer>
-        Integer number_or(const std::string& key, Integer otherwise, bool zero = false) {
-            return has(key) ? number<Integer>(key, zero) : otherwise;
-        }
         double positive(const std::string& key) {
             return reader_->positive(reader_->value(*table_, prefix_, key), prefix_ + key);
         }
-        double positive_or(const std::string& key, double otherwise) { return has(key) ? positive(key) : otherwise; }
 
         template <class Integer>
-        std::vector<Integer> numbers_or_none(const std::string& key) {
+        std::vector<Integer> numbers(const std::string& key) {
             std::vector<Integer> all;
-            if (!has(key)) return all;
             const toml::node& node = reader_->value(*table_, prefix_, key);
             const toml::array* array = node.as_array();
             if (!array)
@@ -127,9 +113,8 @@ public:
             return printable_line(string->get());
         }
 
-        /// A text that may be empty, or be left out, which is the same.
-        std::string text_or_none(const std::string& key) {
-            if (!has(key)) return {};
+        /// A text that may be empty.
+        std::string text_or_empty(const std::string& key) {
             const toml::node& node = reader_->value(*table_, prefix_, key);
             const auto string = node.as_string();
             if (!string)
@@ -137,24 +122,19 @@ public:
             return reader_->values_.back().value = printable_line(string->get());
         }
 
-        template <class Enum, std::size_t n>
-        Enum choice(const std::string& key, const Choice<Enum> (&choices)[n]) {
+        /// The place of the text among the names.
+        std::size_t choice(const std::string& key, const std::vector<std::string>& names) {
             const std::string found = text(key);
-            std::string names;
-            for (const auto& c : choices) {
-                if (found == c.name) return c.value;
-                names += fmt::format("{}\"{}\"", names.empty() ? "" : &c == &choices[n - 1] ? " or " : ", ", c.name);
+            std::string list;
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                if (found == names[i]) return i;
+                list += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == names.size() ? " or " : ", ", names[i]);
             }
             reader_->fail(reader_->lines_[prefix_ + key], prefix_ + key,
-                          fmt::format("expected {}, found \"{}\"", names, found));
-        }
-        template <class Enum, std::size_t n>
-        Enum choice_or(const std::string& key, const Choice<Enum> (&choices)[n], Enum otherwise) {
-            return has(key) ? choice(key, choices) : otherwise;
+                          fmt::format("expected {}, found \"{}\"", list, found));
         }
 
-        template <class Keys>
-        Section section(const std::string& key, const Keys& known) const {
+        Section section(const std::string& key, const std::vector<std::string>& known) const {
             const toml::node& node = reader_->find(*table_, prefix_, key);
             const toml::table* table = node.as_table();
             if (!table)
@@ -175,8 +155,7 @@ public:
         std::string prefix_;
     };
 
-    template <class Keys>
-    Section root(const Keys& known) {
+    Section root(const std::vector<std::string>& known) {
         only_keys(root_, "", known);
         return Section(*this, root_, "");
     }
@@ -209,15 +188,13 @@ private:
         return name.str();
     }
 
-    template <class Keys>
-    void only_keys(const toml::table& table, const std::string& prefix, const Keys& known) const {
+    void only_keys(const toml::table& table, const std::string& prefix, const std::vector<std::string>& known) const {
         for (const auto& [key, node] : table) {
             const std::string name(key.str());
-            if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+            if (std::find(known.begin(), known.end(), name) == known.end())
                 fail(key.source().begin.line, printable_line(prefix + name),
                      fmt::format("expected one of the keys {}, found an unknown one; correct or remove it{}",
-                                 fmt::join(known, ", "),
-                                 did_you_mean(name, std::vector<std::string>(std::begin(known), std::end(known)))));
+                                 fmt::join(known, ", "), did_you_mean(name, known)));
         }
     }
 
@@ -236,8 +213,7 @@ private:
             values_.push_back({name, "", ""});
             return node;
         }
-        static constexpr const char* pair_keys[] = {"value", "source"};
-        only_keys(*pair, name + ".", pair_keys);
+        only_keys(*pair, name + ".", {"value", "source"});
         const toml::node& source = find(*pair, name + ".", "source");
         if (!source.is_string())
             fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));

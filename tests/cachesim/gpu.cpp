@@ -232,7 +232,7 @@ TEST_CASE("errors of a GPU file name file, line and key") {
 TEST_CASE("impossible caches are refused with the line of the value at fault") {
     using Catch::StartsWith;
     CHECK_THAT(error("line_bytes = 128", "line_bytes = 100"),
-               StartsWith("f.toml:10: l1.line_bytes: expected a multiple"));
+               StartsWith("f.toml:10: l1.line_bytes: expected a power of two, found 100; nearest below: 64"));
     CHECK_THAT(error("line_bytes = 128", "line_bytes = 96"), StartsWith("f.toml:10: l1.line_bytes: expected a power"));
     CHECK_THAT(error("sector_bytes = 32", "sector_bytes = 256"),
                StartsWith("f.toml:11: l1.sector_bytes: expected at most the line's 128"));

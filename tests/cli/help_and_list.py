@@ -67,6 +67,18 @@ class HelpAndList(ProgramTest):
                 self.assertIn(f"{value['value']}  {value['source']}\n", text)
             self.assertRegex(text, rf"(?m)^{gpu['name']} +{gpu['sms']['value']} .* {gpu['l1']['bytes'] // 1024} ")
 
+    def test_the_keys_of_gpu_files_come_with_what_they_may_be_in_text_and_in_json(self):
+        keys = self.succeeds("list", "gpus", "--keys", "--json").json["gpu_keys"]
+        text = self.succeeds("list", "gpus", "--keys", "--wide").text
+        for key in keys:
+            self.assertIn(f"  {key['values']}", text)
+            self.assertRegex(text, rf"(?m)^  {key['name']} .*{re.escape(key['meaning'])}$")
+            self.assertEqual(key["default"] is None, key["needed"])
+        ways, = (key for key in keys if key["name"] == "ways")
+        self.assertEqual(ways["sections"], ["l1", "l2", "l3"])
+        self.refuses(2, "list", "scenes", "--keys", mentions=["list gpus --keys"])
+        self.refuses(2, "list", "gpus", "--keys", "--details", mentions=["list gpus --keys"])
+
     def test_details_are_refused_where_there_are_none(self):
         self.refuses(2, "list", "--details", mentions=["list gpus --details"])
         self.refuses(2, "list", "scenes", "--details", mentions=["scenes"])

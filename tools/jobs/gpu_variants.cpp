@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cachesim/gpus/gpu_keys.hpp"
 #include "tools/jobs/numbers.hpp"
 #include "traces/error.hpp"
 
@@ -32,7 +33,7 @@ std::vector<std::string> split_values(const std::string& text) {
     return values;
 }
 
-bool is_size_key(const std::string& key) { return key.ends_with("_bytes") || key.ends_with(".size"); }
+bool is_size_key(const std::string& key) { return key.ends_with(".size") || cachesim::counts_bytes(key); }
 
 /// A number as TOML has it, which knows neither "064" nor units. Words, lists and fractions stay as they are.
 std::string plain_value(const std::string& key, const std::string& value) {

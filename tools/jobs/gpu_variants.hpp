@@ -12,7 +12,7 @@ namespace raycache::tools {
 inline constexpr std::size_t max_gpu_variants = 256;
 
 /// "l1.ways=64,128" -> "l1.ways=64", "l1.ways=128". A comma within brackets, braces or quotes separates nothing.
-/// Decimal numbers lose leading zeros; a byte count, of a key that ends in "_bytes" or ".size", may have a unit: 28KiB.
+/// Decimal numbers lose leading zeros; a byte count, of a key with the unit bytes or ".size", may have a unit: 28KiB.
 /// Throws UsageError for a value given twice, for a number in another base, and for what is no size.
 std::vector<std::string> listed_changes(const std::string& assignment);
 

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/gpus/gpu_keys.hpp"
 #include "tools/jobs/samples_tables.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
@@ -27,13 +27,10 @@ std::vector<std::string> names_of(const List& list) {
     return names;
 }
 
-/// Every key of every preset, as --set takes it.
+/// Every key of GPU files, as --set takes it.
 std::vector<std::string> gpu_keys() {
-    std::vector<std::string> keys;
-    for (const cachesim::GpuPreset& preset : cachesim::gpu_presets())
-        for (const cachesim::GpuValue& value : cachesim::gpu_values(preset.name)) keys.push_back(value.key + '=');
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<std::string> keys = cachesim::gpu_key_names();
+    for (std::string& key : keys) key += '=';
     return keys;
 }
 

@@ -5,25 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cachesim/gpus/choice.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::tools {
 namespace {
-
-const char* index_name(cachesim::SetIndex index) {
-    switch (index) {
-        case cachesim::SetIndex::modulo:
-            return "modulo";
-        case cachesim::SetIndex::xor_fold:
-            return "xor_fold";
-        case cachesim::SetIndex::ipoly:
-            return "ipoly";
-        case cachesim::SetIndex::parity:
-            return "parity";
-    }
-    return "?";
-}
 
 std::string shape(const cachesim::CacheGeometry& cache) {
     return fmt::format("{}{} x {}", cache.slices > 1 ? fmt::format("{} x ", cache.slices) : "", cache.sets, cache.ways);
@@ -50,15 +37,16 @@ std::string gpu_details_text(std::size_t width) {
     std::string values;
     for (const cachesim::GpuPreset& preset : cachesim::gpu_presets()) {
         const cachesim::Gpu gpu = cachesim::load_gpu(preset.name);
-        table.row({gpu.name, fmt::format("{}", gpu.sms), fmt::format("{}", gpu.warps_per_sm),
-                   fmt::format("{}", gpu.warps_per_cta), fmt::format("{}", gpu.l1_per_sm),
-                   fmt::format("{}", static_cast<double>(gpu.levels[0].bytes()) / 1024), shape(gpu.levels[0]),
-                   index_name(gpu.levels[0].index), gpu.levels[0].policy,
-                   fmt::format("{}", static_cast<double>(gpu.levels[1].bytes()) / (1024 * 1024)), shape(gpu.levels[1]),
-                   index_name(gpu.levels[1].index), gpu.levels[1].policy,
-                   gpu.levels.size() > 2 ? fmt::format("{}", static_cast<double>(gpu.levels[2].bytes()) / (1024 * 1024))
-                                         : "-",
-                   fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
+        table.row(
+            {gpu.name, fmt::format("{}", gpu.sms), fmt::format("{}", gpu.warps_per_sm),
+             fmt::format("{}", gpu.warps_per_cta), fmt::format("{}", gpu.l1_per_sm),
+             fmt::format("{}", static_cast<double>(gpu.levels[0].bytes()) / 1024), shape(gpu.levels[0]),
+             cachesim::name_of<cachesim::SetIndex>(cachesim::set_indices, gpu.levels[0].index), gpu.levels[0].policy,
+             fmt::format("{}", static_cast<double>(gpu.levels[1].bytes()) / (1024 * 1024)), shape(gpu.levels[1]),
+             cachesim::name_of<cachesim::SetIndex>(cachesim::set_indices, gpu.levels[1].index), gpu.levels[1].policy,
+             gpu.levels.size() > 2 ? fmt::format("{}", static_cast<double>(gpu.levels[2].bytes()) / (1024 * 1024))
+                                   : "-",
+             fmt::format("{}/{}", gpu.levels[0].line_bytes, gpu.levels[0].sector_bytes)});
         values += cachesim::break_lines(fmt::format("\n{}: {}\n", gpu.name, gpu.description), width, 4);
         const auto all = cachesim::gpu_values(preset.name);
         constexpr std::size_t widest_value = 24;  // a longer one has lines of its own

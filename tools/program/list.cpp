@@ -9,6 +9,7 @@
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/gpu_details.hpp"
+#include "tools/program/gpu_key_list.hpp"
 #include "tools/program/json_output.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/width_option.hpp"
@@ -55,10 +56,17 @@ struct Options {
     std::string topic;
     JsonOption json;
     WidthOption width;
-    bool details = false;
+    bool details = false, keys = false;
 };
 
 void run(const Options& o) {
+    if (o.keys) {
+        if (o.topic != "gpus" || o.details)
+            throw UsageError(fmt::format("--keys with {}; expected 'raycache list gpus --keys'",
+                                         o.details ? "--details" : fmt::format("topic '{}'", o.topic)));
+        print(o.json ? o.json.document(gpu_keys_json()) : gpu_keys_text(o.width.columns()));
+        return;
+    }
     if (o.details) {
         if (o.topic != "gpus")
             throw UsageError(
@@ -99,8 +107,9 @@ void add_list(Program& program) {
     o->json.add(*command);
     o->width.add(*command);
     command->add_flag("--details", o->details, "with topic gpus: every value of every preset, and who says so");
+    command->add_flag("--keys", o->keys, "with topic gpus: every key of a GPU file, what it may be and what it means");
     command->examples({"raycache list", "raycache list gpus --json", "raycache list gpus --details",
-                       "raycache list gpus --details --json"});
+                       "raycache list gpus --details --json", "raycache list gpus --keys"});
     command->callback([o] { run(*o); });
 }
 
