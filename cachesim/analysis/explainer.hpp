@@ -17,7 +17,7 @@
 #include "cachesim/analysis/findings.hpp"
 #include "cachesim/analysis/pixel_costs.hpp"
 #include "cachesim/analysis/shadow_cache.hpp"
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/request_sink.hpp"
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "cachesim/report/estimate.hpp"
+#include "cachesim/analysis/estimate.hpp"
 
 namespace raycache::cachesim {
 

@@ -14,10 +14,28 @@
 #include <string>
 #include <vector>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/replay/statistics.hpp"
-#include "cachesim/report/report.hpp"
 
 namespace raycache::cachesim {
+
+/// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B, with
+/// x L3 miss rate where there is an L3, and the GPU's own sector size. A level's miss rate is what it fetches over what
+/// it is asked for, of L1 per visit: each distinct sector of a warp access once. Each factor is this strategy's over
+/// the baseline's, with its interval, paired by sample index; the product of the means is the ratio of DRAM bytes/ray
+/// exactly, computed from totals over all sample indices.
+struct Factors {
+    Estimate work{1, {}}, simt_efficiency{1, {}}, coalescing{1, {}}, l1_locality{1, {}}, l2_locality{1, {}};
+    Estimate l3_locality{1, {}};  ///< 1 where there is no L3
+    /// Products of these: all before the caches, the ratio that would remain with equal miss rates; all miss rates; and
+    /// those of L1 and L2.
+    Estimate equal_miss_rates{1, {}}, cache_locality{1, {}}, l1_l2_locality{1, {}};
+
+    double product() const {
+        return work.mean * simt_efficiency.mean * coalescing.mean * l1_locality.mean * l2_locality.mean *
+               l3_locality.mean;
+    }
+};
 
 struct FactorTerm {
     const char *name, *key;  ///< "SIMT efficiency", "simt_efficiency"

@@ -6,13 +6,11 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
-#include "cachesim/report/estimate.hpp"
-#include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
 
@@ -42,13 +40,5 @@ Estimate gain(const std::vector<double>& as_modelled, const std::vector<double>&
 /// Of a predicted speed-up, the factor that perfect caches leave out: value() as modelled over that with a perfect L1,
 /// from all of idealised_replays() in their order.
 Estimate locality_part(const std::vector<SpeedUp>&);
-
-/// A table with one line per replay: cycles of both, their ratio, and for each trace how much faster it is than as
-/// modelled.
-std::string to_text(const std::vector<SpeedUp>&, const std::string& base, const std::string& other,
-                    std::size_t width = text_width);
-
-/// The finding in plain words, from all of idealised_replays() in their order.
-std::string sentence(const std::vector<SpeedUp>&);
 
 }  // namespace raycache::cachesim

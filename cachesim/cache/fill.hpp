@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/cache/geometry.hpp"
 
 namespace raycache::cachesim {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "cachesim/cache/fill.hpp"
-#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/cache/geometry.hpp"
 
 namespace raycache::cachesim {
 

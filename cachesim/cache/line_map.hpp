@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "cachesim/cache/divider.hpp"
-#include "cachesim/gpus/gpu.hpp"
+#include "cachesim/cache/geometry.hpp"
 
 namespace raycache::cachesim {
 

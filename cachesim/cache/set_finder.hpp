@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/cache/line_map.hpp"
 #include "cachesim/cache/lookups.hpp"
-#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {

@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/cache/lookups.hpp"
 #include "cachesim/frontend/coalesce_avx512.hpp"
-#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/frontend/region_layout.hpp"
 #include "cachesim/frontend/warp_access.hpp"
 #include "cachesim/instruction_set.hpp"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/cache/line_ids.hpp"
 #include "traces/header.hpp"
 
 namespace raycache::cachesim {

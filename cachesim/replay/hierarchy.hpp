@@ -10,10 +10,10 @@
 
 #include "cachesim/cache/fill.hpp"
 #include "cachesim/cache/level.hpp"
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/cache/lookups.hpp"
 #include "cachesim/cache/set_finder.hpp"
 #include "cachesim/frontend/coalesce.hpp"
-#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/frontend/load_counter.hpp"
 #include "cachesim/frontend/warp_access.hpp"
 #include "cachesim/gpus/gpu.hpp"

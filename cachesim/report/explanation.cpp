@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/factor_terms.hpp"
-#include "cachesim/report/estimate.hpp"
 #include "cachesim/report/format.hpp"
 
 namespace raycache::cachesim {

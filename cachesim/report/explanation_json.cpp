@@ -4,6 +4,7 @@
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/json_parts.hpp"
+#include "cachesim/report/speed_up_text.hpp"
 
 namespace raycache::cachesim {
 

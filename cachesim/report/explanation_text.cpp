@@ -4,11 +4,12 @@
 #include <cmath>
 #include <functional>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/factor_terms.hpp"
-#include "cachesim/report/estimate.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/groups.hpp"
+#include "cachesim/report/speed_up_text.hpp"
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/waterfall.hpp"
 

@@ -8,8 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/factor_terms.hpp"
-#include "cachesim/report/estimate.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/pairing.hpp"
 #include "cachesim/report/verdict.hpp"

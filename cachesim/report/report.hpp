@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "cachesim/analysis/estimate.hpp"
+#include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "cachesim/report/table.hpp"
 
@@ -19,34 +21,6 @@ struct Series {
     std::uint32_t sector_bytes = 32;         ///< of the GPU's caches: turns sectors into bytes
     std::size_t levels = 2;                  ///< of the GPU's caches: 2 or 3
     std::vector<LaunchStatistics> launches;  ///< one per sample index, ascending
-};
-
-/// A ratio of totals over sample indices (bytes over rays, this strategy's bytes/ray over the baseline's). half_width
-/// is that of its 95 % confidence interval: ratio estimator (Cochran 1977, section 6.3) over the indices, Student t;
-/// absent for one index. Against a baseline the residuals are taken index by index (paired), so what all strategies
-/// share cancels. The mean is NaN (text "-", JSON null, CSV empty) where the denominator is zero. Formulas:
-/// estimate.hpp.
-struct Estimate {
-    double mean = 0;
-    std::optional<double> half_width;
-};
-
-/// DRAM bytes/ray = steps/ray x warp accesses/step x sectors/warp access x L1 miss rate x L2 miss rate x 32 B, with
-/// x L3 miss rate where there is an L3, and the GPU's own sector size. A level's miss rate is what it fetches over what
-/// it is asked for, of L1 per visit: each distinct sector of a warp access once. Each factor is this strategy's over
-/// the baseline's, with its interval, paired by sample index; the product of the means is the ratio of DRAM bytes/ray
-/// exactly, computed from totals over all sample indices.
-struct Factors {
-    Estimate work{1, {}}, simt_efficiency{1, {}}, coalescing{1, {}}, l1_locality{1, {}}, l2_locality{1, {}};
-    Estimate l3_locality{1, {}};  ///< 1 where there is no L3
-    /// Products of these: all before the caches, the ratio that would remain with equal miss rates; all miss rates; and
-    /// those of L1 and L2.
-    Estimate equal_miss_rates{1, {}}, cache_locality{1, {}}, l1_l2_locality{1, {}};
-
-    double product() const {
-        return work.mean * simt_efficiency.mean * coalescing.mean * l1_locality.mean * l2_locality.mean *
-               l3_locality.mean;
-    }
 };
 
 enum class GroupBy { none, bounce, ray, object };  ///< ray: camera, bounce, shadow; object: node, triangle, texel

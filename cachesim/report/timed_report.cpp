@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "cachesim/report/estimate.hpp"
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/report/pairing.hpp"
 #include "cachesim/report/timed_figures.hpp"
 #include "traces/error.hpp"

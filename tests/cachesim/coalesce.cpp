@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/cache/line_ids.hpp"
 #include "random_launch.hpp"
 #include "traces/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "cachesim/report/estimate.hpp"
+#include "cachesim/analysis/estimate.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/factor_terms.hpp"
-#include "cachesim/report/estimate.hpp"
 #include "tests/cachesim/series.hpp"
 
 using namespace raycache::cachesim;

@@ -1,5 +1,5 @@
 // What is said of a predicted speed-up.
-#include "cachesim/analysis/speed_up.hpp"
+#include "cachesim/report/speed_up_text.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "cachesim/report/estimate.hpp"
+#include "cachesim/analysis/estimate.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tools/jobs/replay_job.hpp"
 #include "tracer/quality/reference_file.hpp"

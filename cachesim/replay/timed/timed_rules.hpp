@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/cache/line_map.hpp"
-#include "cachesim/frontend/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/timed/leaf_starts.hpp"
 #include "cachesim/replay/timed/visit.hpp"

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/cache/line_ids.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"

@@ -1,4 +1,4 @@
-#include "cachesim/frontend/line_ids.hpp"
+#include "cachesim/cache/line_ids.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cachesim/report/estimate.hpp"
+#include "cachesim/analysis/estimate.hpp"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>

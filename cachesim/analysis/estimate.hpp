@@ -15,9 +15,16 @@
 #include <optional>
 #include <vector>
 
-#include "cachesim/report/report.hpp"
-
 namespace raycache::cachesim {
+
+/// A ratio of totals over sample indices (bytes over rays, this strategy's bytes/ray over the baseline's). half_width
+/// is that of its 95 % confidence interval: ratio estimator (Cochran 1977, section 6.3) over the indices, Student t;
+/// absent for one index. Against a baseline the residuals are taken index by index (paired), so what all strategies
+/// share cancels. The mean is NaN (text "-", JSON null, CSV empty) where the denominator is zero.
+struct Estimate {
+    double mean = 0;
+    std::optional<double> half_width;
+};
 
 /// Sums per sample index, in the same order.
 struct Sums {
