@@ -25,7 +25,7 @@ void bound(const Origin& origin, const std::string& what, std::uint64_t value, s
 void check_region(const Region& region, unsigned index, std::uint32_t version, const Origin& at) {
     const auto what = [&](const char* field) { return fmt::format("{} of region {}", field, index); };
     bound(at, what("kind"), static_cast<unsigned>(region.kind), 0,
-          (version == 1 ? object_kinds_of_version_1 : object_kinds) - 1);
+          object_kinds_of(version) - 1);
     bound(at + 1, what("degree"), region.degree, 0, format::max_degree);
     bound(at + 4, what("element size"), region.element_size, 1, format::max_element_size);
     bound(at + 8, what("base address"), region.base, 0, format::max_address);
@@ -53,11 +53,10 @@ void check_kernels(const Origin& origin, std::uint64_t kernels, std::uint64_t wa
 std::uint32_t version_of(const Header& header) {
     const Provenance none;
     const bool plain = header.kernels_per_launch == 1 && header.provenance.execution == none.execution &&
-                       header.provenance.order == none.order &&
-                       std::all_of(header.regions.begin(), header.regions.end(), [](const Region& r) {
-                           return static_cast<unsigned>(r.kind) < object_kinds_of_version_1;
-                       });
-    return plain ? 1 : 2;
+                       header.provenance.order == none.order;
+    std::uint32_t version = plain ? 1 : 2;
+    for (const Region& r : header.regions) version = std::max(version, is_known(r.kind) ? role_of(r.kind).version : 2);
+    return version;
 }
 
 void check_links(const Header& header, unsigned self) {

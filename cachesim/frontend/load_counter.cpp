@@ -58,7 +58,7 @@ LoadCounter::LoadCounter(const std::vector<traces::Region>& regions, const Front
 
 LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEnd& front_end, const LineShape& shape) {
     Loads loads;
-    if (region.kind == traces::ObjectKind::sort) {
+    if (traces::is_stream(region.kind)) {
         loads.form = Form::from_sectors;
         loads.requests_per_element = 1;
         return loads;

@@ -17,7 +17,7 @@ constexpr std::size_t accesses_per_window = 32768;
 
 LineShape shape_of(const Gpu& gpu) { return {gpu.l1().line_bytes, gpu.l1().sector_bytes}; }
 
-bool is_of_wavefront(traces::ObjectKind kind) { return kind >= traces::ObjectKind::ray_state; }
+bool is_between_kernels(traces::ObjectKind kind) { return traces::role_of(kind).is_between_kernels; }
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Hierarchy::Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions,
 }
 
 void Hierarchy::observe(RequestSink& sink) {
-    if (std::any_of(kinds_.begin(), kinds_.end(), is_of_wavefront))
+    if (std::any_of(kinds_.begin(), kinds_.end(), is_between_kernels))
         throw Error("trace of a wavefront: expected one of a megakernel, whose requests can be followed");
     sink_ = &sink;
 }

@@ -49,7 +49,7 @@ public:
         const std::uint32_t group = tally_.group(record);
         if (sink_) [[unlikely]]
             sink_->issued({record, elements, warp});
-        if (kinds_[record.region] == traces::ObjectKind::sort) [[unlikely]] {
+        if (traces::is_stream(kinds_[record.region])) [[unlikely]] {
             pass_all(group, record);
             return;
         }

@@ -15,7 +15,7 @@ Counters Tally::counters(const Sums& sums, std::size_t region, std::size_t level
     c.warp_accesses = sums.warp_accesses;
     c.loads = sums.warp_accesses * loads.loads(region);
     c.l1_requests = loads.requests_follow(region) ? loads.requests(region, sums.sectors) : sums.requests;
-    if (kind == traces::ObjectKind::node || kind == traces::ObjectKind::triangle) c.steps = sums.lane_accesses;
+    if (traces::role_of(kind).is_step) c.steps = sums.lane_accesses;
     std::uint64_t asked = sums.sectors;
     for (std::size_t level = 0; level < levels; ++level) {
         c.*fields[level].asked = asked;
@@ -25,7 +25,7 @@ Counters Tally::counters(const Sums& sums, std::size_t region, std::size_t level
     c.dram_sectors = asked;
     c.dram_first_sectors = sums.first;
     if (traces::is_write(kind)) c.written_sectors = asked;
-    if (kind == traces::ObjectKind::sort) c.sort_sectors = asked;
+    if (traces::is_stream(kind)) c.sort_sectors = asked;
     return c;
 }
 

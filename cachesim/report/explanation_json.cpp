@@ -3,6 +3,7 @@
 #include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/groups.hpp"
+#include "cachesim/report/json_key.hpp"
 #include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/speed_up_text.hpp"
 
@@ -32,12 +33,13 @@ Json counters(const Counters& c, std::size_t levels) {
 }
 
 Json level(const LevelFindings& found) {
-    constexpr const char* kinds[] = {"node", "triangle", "texel"};
     constexpr const char* rays[] = {"camera", "bounce", "shadow"};
     Json json{{"all", counts(found.all())}};
     Json& by_object = json["by_object"] = Json::object();
-    for (unsigned kind = 0; kind < traces::object_kinds_of_version_1; ++kind)
-        if (found.by_kind[kind].lookups) by_object[kinds[kind]] = counts(found.by_kind[kind]);
+    for (const traces::ObjectKindRole& role : traces::object_kind_roles) {
+        const MissCounts& of_kind = found.by_kind[static_cast<std::size_t>(role.kind)];
+        if (of_kind.lookups) by_object[snake_case(role.name)] = counts(of_kind);
+    }
     Json& by_ray = json["by_ray"] = Json::array();
     for (std::size_t i = 0; i < found.by_ray.size(); ++i) {
         if (!found.by_ray[i].lookups) continue;

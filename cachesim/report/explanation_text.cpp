@@ -194,9 +194,8 @@ std::string place_table(const Explanation& e, std::size_t width) {
                    per_ray.other(o2.misses()), per_ray.ratio(b2.misses(), o2.misses())});
     };
     row("all", &LevelFindings::all);
-    constexpr const char* kinds[] = {"nodes", "triangles", "texels"};
-    for (unsigned kind = 0; kind < traces::object_kinds_of_version_1; ++kind)
-        row(kinds[kind], [kind](const LevelFindings& f) { return f.by_kind[kind]; });
+    for (const traces::ObjectKindRole& role : traces::object_kind_roles)
+        row(role.plural, [&](const LevelFindings& f) { return f.by_kind[static_cast<std::size_t>(role.kind)]; });
     constexpr const char* rays[] = {"camera", "bounce", "shadow"};
     for (unsigned ray = 0; ray < traces::ray_types; ++ray)
         for (unsigned bounce = 0; bounce < LevelFindings::bounces; ++bounce)

@@ -38,7 +38,7 @@ void add(LaunchGroup& group, std::size_t launch, traces::ObjectKind kind, const 
     group.by_launch[launch] += counters;
     if (traces::is_write(kind))
         group.stores += counters;
-    else if (kind != traces::ObjectKind::sort)
+    else if (!traces::is_stream(kind))
         group.loads += counters;
 }
 

@@ -182,7 +182,7 @@ Sample noise(const Shape& shape) {
     Random random(shape.seed);
     Sample sample{header_of("noise", shape), {}};
     for (unsigned i = 0, count = 1 + random.below(6); i < count; ++i) {
-        Region region{static_cast<ObjectKind>(random.below(object_kinds_of_version_1)),
+        Region region{static_cast<ObjectKind>(random.below(object_kinds_of(1))),
                       std::uint64_t{i} << 32,
                       16,
                       16,

@@ -3,8 +3,8 @@
 // A node links to the first triangle of a leaf (traces/header.hpp), and the lanes of a warp that stand at leaves begin
 // them together and test their triangles one behind the other. So a visit begins a leaf where a lane reads a triangle
 // that a link leads to. Where no link leads to any triangle of a region, the trace does not name its leaves: there a
-// visit begins one if the access of the warp before it, texels aside, was not to triangles; leaves that follow each
-// other without a node between them then count as one.
+// visit begins one if the step of the warp before it was not to triangles (texels, for one, are no step); leaves that
+// follow each other without a node between them then count as one.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ public:
     explicit LeafStarts(const std::vector<traces::Region>&);
 
     bool is_triangle(std::uint32_t region) const { return regions_[region].kind == traces::ObjectKind::triangle; }
-    bool is_texel(std::uint32_t region) const { return regions_[region].kind == traces::ObjectKind::texel; }
+    bool is_step(std::uint32_t region) const { return traces::role_of(regions_[region].kind).is_step; }
 
-    /// Whether lanes that read these triangles of the region begin a leaf. `among_triangles`: the access before was to
+    /// Whether lanes that read these triangles of the region begin a leaf. `among_triangles`: the step before was to
     /// triangles, too.
     bool begins(std::uint32_t region, std::span<const std::uint32_t> triangles, bool among_triangles) const {
         const OfRegion& of = regions_[region];

@@ -48,11 +48,11 @@ public:
 
 private:
     static bool streams(const traces::Region& r) {
-        return traces::is_write(r.kind) || r.kind == traces::ObjectKind::sort;
+        return traces::role_of(r.kind).access != traces::AccessType::read;
     }
 
     std::uint64_t sectors_of(const traces::Region& region, const std::uint32_t* elements, unsigned lanes) {
-        if (region.kind == traces::ObjectKind::sort)
+        if (traces::is_stream(region.kind))
             return (std::uint64_t{lanes} * region.element_size + sector_bytes_ - 1) / sector_bytes_;
         touched_.clear();
         for (unsigned i = 0; i < lanes; ++i) {

@@ -9,14 +9,15 @@ namespace raycache::cachesim {
 namespace {
 
 std::uint32_t instructions_of(const Timing& timing, traces::ObjectKind kind) {
-    switch (kind) {
-        case traces::ObjectKind::node:
+    switch (traces::role_of(kind).charge) {
+        case traces::Charge::node:
             return timing.node_instructions;
-        case traces::ObjectKind::triangle:
+        case traces::Charge::triangle:
             return timing.triangle_instructions;
-        default:
+        case traces::Charge::texel:
             return timing.texel_instructions;
     }
+    return 0;
 }
 
 std::uint32_t whole(double number) {

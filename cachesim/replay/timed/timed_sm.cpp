@@ -75,8 +75,8 @@ std::uint32_t TimedSm::leaf(Warp& warp, std::uint32_t region, unsigned lanes) co
     const LeafStarts& leaves = *rules_.leaves;
     const bool triangles = leaves.is_triangle(region);
     const bool begins = triangles && leaves.begins(region, {warp.elements, lanes}, warp.among_triangles);
-    // Texels are read between the triangles of a leaf; vectors of one record begin together.
-    if (warp.left == 0 && !leaves.is_texel(region)) warp.among_triangles = triangles;
+    // Texels, no steps, are read between the triangles of a leaf; vectors of one record begin together.
+    if (warp.left == 0 && leaves.is_step(region)) warp.among_triangles = triangles;
     return begins ? rules_.timing.leaf_instructions : 0;
 }
 
