@@ -1,35 +1,35 @@
-// Two sources of launches -> an explanation: every launch of both through the same GPU, with a listener that sorts
-// misses and charges pixels.
+// The job "explain": why one of two strategies, or traces, is kinder to a GPU's caches than the other.
 #pragma once
 
-#include <array>
-#include <string>
 #include <vector>
 
-#include "cachesim/analysis/pixel_costs.hpp"
-#include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/explanation.hpp"
-#include "tools/jobs/launch_source.hpp"
-#include "tools/jobs/observer.hpp"
+#include "tools/jobs/gpu_settings.hpp"
+#include "tools/jobs/heat_map.hpp"
+#include "tools/jobs/launches.hpp"
 
 namespace raycache::tools {
 
-struct ExplainRequest {
-    std::array<const LaunchSource*, 2> sources;  ///< base, other
-    std::array<std::string, 2> names;            ///< of files or strategies, for messages
-    cachesim::Gpu gpu;
+struct ExplainJob {
+    LaunchSettings launches;  ///< two: base and other, of one kernel each
+    GpuSettings gpu;          ///< one
     cachesim::GroupBy by = cachesim::GroupBy::none;
-    bool timed = true;    ///< whether predicted times are wanted, if the GPU has a [timing]
-    bool pixels = false;  ///< whether costs of pixels are wanted
+    bool timed = true;    ///< predict times, if the GPU has a [timing]
+    bool pixels = false;  ///< also heat maps
+
+    /// Throws UsageError unless the launches are two, and as LaunchSettings::check() does.
+    void check() const;
 };
 
-struct Explained {
+struct ExplainResult {
+    Subject subject;
     cachesim::Explanation explanation;
-    std::array<cachesim::PixelCosts, 2> costs;  ///< of all launches; empty if not wanted
+    std::vector<HeatMap> maps;  ///< of base and other; none unless asked for
 };
 
-/// Throws Error if the traces are not of the same scene, view and sample indices. The result does not depend on the
-/// number of threads.
-Explained explain(const ExplainRequest&, Observer&);
+/// `gpu`: that of job.gpu. `outputs` as in replay_job.hpp. Throws as explain_launches() and Launches do.
+ExplainResult run(const ExplainJob&, const cachesim::Gpu& gpu, Observer&, const FileNames& outputs = {});
+/// The same with the GPU loaded. Also throws as GpuSettings::load_one() does.
+ExplainResult run(const ExplainJob&, Observer&, const FileNames& outputs = {});
 
 }  // namespace raycache::tools

@@ -1,5 +1,4 @@
-// From strategies to findings about their pictures: errors against a reference, and the time a GPU is predicted to
-// take.
+// The job "quality": how good the pictures of strategies are. raycache quality and sweep print its result.
 #pragma once
 
 #include <cstdint>
@@ -7,76 +6,40 @@
 #include <string>
 #include <vector>
 
-#include "cachesim/gpus/gpu.hpp"
-#include "cachesim/report/report.hpp"
-#include "tools/jobs/observer.hpp"
-#include "tools/jobs/outputs.hpp"
-#include "tracer/capture.hpp"
-#include "tracer/prepared_scene.hpp"
-#include "tracer/quality/error_measures.hpp"
-#include "tracer/quality/reference.hpp"
+#include "tools/jobs/gpu_settings.hpp"
+#include "tools/jobs/quality_report.hpp"
+#include "tools/jobs/sampling_settings.hpp"
 
 namespace raycache::tools {
 
-struct QualityRequest {
-    std::vector<tracer::CaptureSettings>
-        cases;                  ///< all of one size and of equal paths; strategy, sequence, N, mu differ
-    std::string baseline;       ///< strategy that ratios refer to; empty: none
-    std::uint64_t repeats = 1;  ///< pictures of each case, with seeds one after the other
-    bool pairs = false;         ///< also find the worst pair of dimensions: one more picture per pair
-    bool equal_time = false;    ///< also render at the N that takes as long as the baseline; needs a GPU
-    std::optional<cachesim::Gpu> gpu;
-    std::optional<float> clamp;  ///< of each sample's radiance, as RenderSettings::clamp
+struct QualityJob {
+    SceneSettings scene;
+    SamplingSettings sampling;
+    std::vector<CaseSettings> cases;  ///< what is compared
+    GpuSettings gpu;                  ///< whose time is predicted; none or one
+    std::string baseline;             ///< strategy that ratios refer to; empty: none
+    std::uint64_t reference_spp = 1024;
+    std::string reference_strategy = "random";
+    std::string reference_file;  ///< .exr that keeps the reference; empty: the user's cache folder
+    std::uint64_t repeats = 1;   ///< pictures of each case, with seeds one after the other
+    std::optional<float> clamp;  ///< radiance that no channel of a sample exceeds
+    bool pairs = false;          ///< find the worst pair of dimensions
+    bool equal_time = false;     ///< also at the N that takes as long as the baseline; needs a GPU
+
+    /// What is measured, without a GPU. Throws UsageError for settings that make no sense.
+    QualityRequest request() const;
 };
 
-/// What remains of the structured error (ErrorMeasures::structured_mse) when dimensions 2 pair and 2 pair + 1 are left
-/// to independent random numbers.
-struct PairEffect {
-    std::uint32_t pair = 0;
-    double share =
-        0;  ///< by how much it falls, of the strategy's own: 1 = this pair alone carries it; NaN if there is none
+struct QualityResult {
+    QualityReport report;
+    QualityPictures pictures;
 };
 
-struct QualityRow {
-    tracer::CaptureSettings settings;
-    std::string parameters;
-    tracer::ErrorMeasures errors;
-    tracer::Image picture;                   ///< of the first seed
-    std::optional<std::size_t> baseline;     ///< row of the same N, and of the same sequence where there is one
-    std::optional<tracer::RmseRatio> ratio;  ///< to the baseline; absent without one
-    std::vector<PairEffect> pairs;           ///< by pair; empty unless asked for
-
-    struct Timing {
-        double seconds = 0;                          ///< predicted for all N samples; NaN: no_time_note()
-        std::optional<cachesim::Estimate> speed_up;  ///< over the baseline at equal N; absent without one
-    };
-    std::optional<Timing> timing;
-    struct EqualTime {
-        std::uint64_t spp = 0;
-        tracer::ErrorMeasures errors;
-        tracer::Image picture;
-    };
-    std::optional<EqualTime> equal_time;
-
-    const tracer::StrategySettings& strategy() const { return settings.strategy; }
-    std::uint64_t spp() const { return settings.strategy.parameters.spp; }
-    /// The pair with the largest share, if any has one.
-    std::optional<PairEffect> worst_pair() const;
-};
-
-/// Throws UsageError for settings out of range, before anything is rendered: call it before the scene is loaded.
-void check(const QualityRequest&);
-
-std::vector<QualityRow> measure_quality(const tracer::PreparedScene&, const tracer::Reference&, const QualityRequest&,
-                                        Observer&);
-
-/// Tells `observer` what find_reference() and measure_quality() will take; `reference`: seconds for a new one.
-void expect_stages(Observer&, const QualityRequest&, double reference);
-
-/// From `file` if it is given and exists, else from the cache, else rendered and kept in that place. A damaged or
-/// different file in the cache is replaced, with a warning; one that the user named is refused (Error). `path`: where
-/// it lies now, empty if nowhere. A `file` that cannot be written is a failed delivery.
-tracer::Reference find_reference(const tracer::PreparedScene&, const tracer::ReferenceSettings&,
-                                 const std::string& file, std::string& path, Deliveries&, Observer&);
+/// `gpu`: that of job.gpu, if any. A reference that cannot be kept in its file is a failed delivery; else throws Error
+/// as its parts do. `outputs` as in replay_job.hpp.
+QualityResult run(const QualityJob&, const std::optional<cachesim::Gpu>& gpu, Observer&, Deliveries&,
+                  const FileNames& outputs = {});
+/// The same with the GPU loaded. Also throws as GpuSettings::load_one() does.
+QualityResult run(const QualityJob&, Observer&, Deliveries&, const FileNames& outputs = {});
 
 }  // namespace raycache::tools

@@ -102,8 +102,9 @@ std::string speed_text(const QualityRow& row) {
                                 : std::string(", predicted speed 1 x");
 }
 
-tracer::ScreenImage draw_index(const QualityReport& report, const Image& reference, const Crop& crop,
+tracer::ScreenImage draw_index(const QualityReport& report, const QualityPictures& pictures, const Crop& crop,
                                const Scale& pixels, const Scale& blocks, float exposure) {
+    const Image& reference = pictures.reference;
     const bool equal_time = report.rows.front().equal_time.has_value();
     const unsigned columns = equal_time ? 5 : 3, row_height = line + panel + margin;
     const unsigned top = margin + 4 * line + 8;
@@ -145,8 +146,8 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
                                 short_text(row.errors.rmse, 3, true), short_text(row.errors.r8, 1),
                                 number_text(row.errors.z_pixels, 1), speed_text(row)),
                     text_scale);
-        draw_crop(canvas, column(0), y + line, row.picture, crop, exposure);
-        draw_error(canvas, column(1), y + line, row.picture, reference, crop, pixels);
+        draw_crop(canvas, column(0), y + line, pictures.rows[r], crop, exposure);
+        draw_error(canvas, column(1), y + line, pictures.rows[r], reference, crop, pixels);
         const auto& means = row.errors.sums.blocks;
         if (means.columns > 0 && means.rows > 0)
             draw_part(canvas, column(2), y + line, means.columns, means.rows, [&](std::uint32_t bx, std::uint32_t by) {
@@ -158,8 +159,8 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
                     fmt::format("equal time: N {}, RMSE {}, R8 {}", same.spp, short_text(same.errors.rmse, 3, true),
                                 short_text(same.errors.r8, 1)),
                     text_scale);
-        draw_crop(canvas, column(3), y + line, same.picture, crop, exposure);
-        draw_error(canvas, column(4), y + line, same.picture, reference, crop, pixels);
+        draw_crop(canvas, column(3), y + line, pictures.at_equal_time[r], crop, exposure);
+        draw_error(canvas, column(4), y + line, pictures.at_equal_time[r], reference, crop, pixels);
     }
     const unsigned bottom = top + rows * row_height;
     canvas.text(column(0), bottom, "picture, crop", text_scale);
@@ -172,15 +173,15 @@ tracer::ScreenImage draw_index(const QualityReport& report, const Image& referen
     return canvas.image();
 }
 
-void write_row(const std::string& stem, const QualityRow& row, const Image& reference, const Scale& scale,
-               float exposure, Deliveries& deliveries) {
-    deliveries.attempt([&] { tracer::write_image(stem + ".exr", row.picture); });
-    deliveries.attempt([&] { tracer::write_image(stem + ".png", row.picture, exposure); });
-    Image error = row.picture;
+void write_row(const std::string& stem, const QualityRow& row, const Image& picture, const Image& reference,
+               const Scale& scale, float exposure, Deliveries& deliveries) {
+    deliveries.attempt([&] { tracer::write_image(stem + ".exr", picture); });
+    deliveries.attempt([&] { tracer::write_image(stem + ".png", picture, exposure); });
+    Image error = picture;
     for (std::size_t p = 0; p < error.pixels.size(); ++p) error.pixels[p] = error.pixels[p] - reference.pixels[p];
     deliveries.attempt([&] { tracer::write_image(stem + "_error.exr", error); });
     Canvas canvas(error.width, error.height + ScaleBar::height + 2 * line + 8);
-    const auto luminance = luminance_error(row.picture, reference);
+    const auto luminance = luminance_error(picture, reference);
     for (std::uint32_t y = 0; y < error.height; ++y)
         for (std::uint32_t x = 0; x < error.width; ++x)
             canvas.fill(x, y, 1, 1, scale.of(luminance[std::size_t{y} * error.width + x]));
@@ -233,25 +234,27 @@ std::vector<std::string> quality_picture_names(const std::string& folder,
     return names;
 }
 
-void write_quality_pictures(const std::string& folder, const QualityReport& report,
+void write_quality_pictures(const std::string& folder, const QualityReport& report, const QualityPictures& pictures,
                             const std::optional<Crop>& given_crop, Deliveries& deliveries) {
-    const Image& reference = report.reference;
+    const Image& reference = pictures.reference;
     const Crop crop = given_crop ? *given_crop : worst_crop(report);
     const float exposure = automatic_exposure(reference);
     std::vector<double> errors, means;
-    for (const QualityRow& row : report.rows) {
-        const auto own = luminance_error(row.picture, reference);
+    for (const Image& picture : pictures.rows) {
+        const auto own = luminance_error(picture, reference);
         errors.insert(errors.end(), own.begin(), own.end());
-        means.insert(means.end(), row.errors.sums.blocks.mean.begin(), row.errors.sums.blocks.mean.end());
     }
+    for (const QualityRow& row : report.rows)
+        means.insert(means.end(), row.errors.sums.blocks.mean.begin(), row.errors.sums.blocks.mean.end());
     const Scale pixels = symmetric_scale(errors), blocks = symmetric_scale(means);
     const std::filesystem::path path(folder);
-    for (const QualityRow& row : report.rows)
-        write_row((path / file_name(label(row, report.rows))).string(), row, reference, pixels, exposure, deliveries);
+    for (std::size_t r = 0; r < report.rows.size(); ++r)
+        write_row((path / file_name(label(report.rows[r], report.rows))).string(), report.rows[r], pictures.rows[r],
+                  reference, pixels, exposure, deliveries);
     deliveries.attempt([&] { tracer::write_image((path / "reference.png").string(), reference, exposure); });
     deliveries.attempt([&] {
         tracer::write_screen_image((path / "index.png").string(),
-                                   draw_index(report, reference, crop, pixels, blocks, exposure));
+                                   draw_index(report, pictures, crop, pixels, blocks, exposure));
     });
 }
 

@@ -28,7 +28,7 @@ std::vector<std::string> quality_picture_names(const std::string& folder,
 /// Writes into `folder`: index.png (a row per strategy: crop, its error, all blocks' mean errors, and with equal_time
 /// crop and error at that N), reference.png, and for each strategy NAME.exr and .png (its picture), NAME_error.exr and
 /// .png (minus the reference) and NAME_blocks.exr. `crop`: default is where strategies' blocks err most.
-void write_quality_pictures(const std::string& folder, const QualityReport&, const std::optional<Crop>& crop,
-                            Deliveries&);
+void write_quality_pictures(const std::string& folder, const QualityReport&, const QualityPictures&,
+                            const std::optional<Crop>& crop, Deliveries&);
 
 }  // namespace raycache::tools

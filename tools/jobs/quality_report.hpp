@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/jobs/quality_job.hpp"
+#include "tools/jobs/measure_quality.hpp"
 #include "tools/jobs/subject.hpp"
 #include "tracer/quality/sweep_rule.hpp"
 
@@ -16,7 +16,6 @@ struct QualityReport {
     std::uint64_t reference_spp = 0, repeats = 1;
     std::optional<float> clamp;
     std::uint32_t width = 0, height = 0;
-    tracer::Image reference;
     std::vector<QualityRow> rows;
     std::vector<std::string> notes;
     Subject subject;

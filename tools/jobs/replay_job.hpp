@@ -1,31 +1,32 @@
-// From traces to series: every launch of every trace, through every GPU. A trace is a file, or a capture made on the
-// fly; both hand the same warps to the same replay, so both give the same numbers.
+// The job "replay": launches through GPUs, counted or in time. raycache replay and compare print reports of its result.
 #pragma once
 
 #include <vector>
 
-#include "cachesim/gpus/gpu.hpp"
-#include "cachesim/replay/timed/timed_replay.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
-#include "tools/jobs/launch_source.hpp"
-#include "tools/jobs/observer.hpp"
+#include "tools/jobs/gpu_settings.hpp"
+#include "tools/jobs/launches.hpp"
 
 namespace raycache::tools {
 
-/// One series per source and GPU, sources first. The stage of the observer is "replay". Throws Error as traces::Reader
-/// does.
-std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);
-
-/// Both replays of the same warps, series by series in the same order.
-struct Predicted {
-    std::vector<cachesim::TimedSeries> times;
-    std::vector<cachesim::Series> traffic;
+struct ReplayJob {
+    LaunchSettings launches;
+    GpuSettings gpu;
+    bool timed = false;  ///< predict cycles, too
 };
-Predicted predict(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);
 
-/// In time alone.
-std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
-                                                Observer&, const cachesim::Idealised& = {});
+struct ReplayResult {
+    Subject subject;
+    /// One per source and GPU, sources first: what make_report() takes.
+    std::vector<cachesim::Series> series;
+    std::vector<cachesim::TimedSeries> times;  ///< in the same order; none unless asked for
+};
+
+/// `gpus`: those of job.gpu. `outputs`: files that the caller is going to write, refused where the job reads one of
+/// them. Throws UsageError for settings that make no sense, else Error as Launches does.
+ReplayResult run(const ReplayJob&, const std::vector<cachesim::Gpu>& gpus, Observer&, const FileNames& outputs = {});
+/// The same with the GPUs loaded. Also throws as GpuSettings::load() does.
+ReplayResult run(const ReplayJob&, Observer&, const FileNames& outputs = {});
 
 }  // namespace raycache::tools

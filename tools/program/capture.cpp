@@ -1,14 +1,9 @@
 // raycache capture: scene -> trace file.
-#include <fmt/format.h>
-
-#include "tools/jobs/costs.hpp"
+#include "tools/jobs/capture_job.hpp"
 #include "tools/program/commands.hpp"
-#include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
-#include "tools/program/interruption.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
-#include "tracer/capture.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -22,20 +17,13 @@ struct Options {
 };
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    const tracer::CaptureSettings settings = o->sampling.capture(o->scene, o->sequence, o->decorrelation, o->spp);
-    return [o, command, settings] {
-        warn_of_settings(*command, {&settings, 1});
-        check_outputs({o->output}, warn);
-        advise_if_interrupted("a capture cannot go on where it ended: run the same command again");
+    const CaptureJob job{o->scene, o->sampling, {o->decorrelation, o->sequence, o->spp, {}, {}}, o->output};
+    const tracer::CaptureSettings settings = capture_settings(job.scene, job.sampling, job.strategy);
+    return [o, command, job, settings] {
+        warn_of_idle(*command, {&settings, 1});
         const auto limit = o->threads.apply();
         Progress progress("capture");
-        progress.expect("trace", Work::trace, trace_cost(settings));
-        const auto scene = o->scene.prepare({o->output}, progress);
-        const tracer::Capture capture(*scene, settings);
-        const Stage stage(progress, "trace",
-                          std::uint64_t{capture.header().warps_per_launch} * capture.header().launches.size(), "rays");
-        tracer::write_capture(capture, o->output,
-                              [&](std::uint64_t warps, std::uint64_t rays) { stage.add(warps, rays); });
+        run(job, progress);
     };
 }
 

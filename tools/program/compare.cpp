@@ -2,19 +2,16 @@
 #include <fmt/format.h>
 
 #include <limits>
-#include <memory>
 #include <set>
 
-#include "tools/jobs/costs.hpp"
+#include "tools/jobs/replay_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/inputs.hpp"
-#include "tools/program/interruption.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/report_options.hpp"
-#include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -31,60 +28,46 @@ struct Options {
     ThreadOptions threads;
 };
 
-Action plan_traces(const std::shared_ptr<const Options>& o, const Command* command,
-                   const std::vector<std::string>& traces) {
-    const auto gpus = o->report.load_gpus(traces);
-    return [o, command, traces, gpus] {
-        for (const std::string& line : idle_on_traces(*command)) warn(line);
-        check_outputs(o->report.outputs(), warn);
-        const auto limit = o->threads.apply();
-        Progress progress("compare");
-        const TraceFiles files(traces);
-        o->report.replay_and_publish(files.sources, traces, gpus, progress);
-    };
-}
-
 /// One for each sequence, N, strategy and K; a strategy without K once.
-std::vector<tracer::CaptureSettings> settings_of(const Options& o) {
-    std::vector<tracer::CaptureSettings> all;
+std::vector<CaseSettings> cases_of(const Options& o) {
+    std::vector<CaseSettings> all;
     std::set<std::string> seen;
     for (const std::string& sequence : o.sequences)
         for (const std::uint64_t spp : o.spp)
             for (const std::string& strategy : o.strategies)
                 for (const std::string& k : o.ks) {
-                    SamplingOptions sampling = o.sampling;
-                    sampling.k = k;
-                    const auto settings = sampling.capture(o.scene, sequence, strategy, spp);
+                    const CaseSettings one{strategy, sequence, spp, k, {}};
+                    const auto settings = capture_settings(o.scene, o.sampling, one);
                     const tracer::SamplingStrategy made(settings.strategy,
                                                         tracer::path_dimensions(settings.paths.bounces));
                     if (o.ks.size() == 1 ||
                         seen.insert(fmt::format("{} {} {} {}", sequence, spp, strategy, made.parameters())).second)
-                        all.push_back(settings);
+                        all.push_back(one);
                 }
     return all;
 }
 
-/// Fused: no files between capture and replay.
-Action plan_scene(const std::shared_ptr<const Options>& o, const Command* command) {
-    const auto gpus = o->report.load_gpus({});
-    const std::vector<tracer::CaptureSettings> settings = settings_of(*o);
-    return [o, command, gpus, settings] {
-        warn_of_settings(*command, settings);
-        check_outputs(o->report.outputs(), warn);
+Action plan(const std::shared_ptr<Options>& o, const Command* command) {
+    const Inputs inputs = o->inputs.sorted(*command);
+    o->scene.source = inputs.scene;
+    ReplayJob job = o->report.job();
+    job.launches.traces = inputs.traces;
+    const auto gpus = o->report.load_gpus(inputs.traces);
+    if (!job.launches.of_traces()) {
+        job.launches.scene = o->scene;
+        job.launches.sampling = o->sampling;
+        job.launches.cases = cases_of(*o);
+    }
+    return [o, command, job, gpus] {
+        if (job.launches.of_traces())
+            for (const std::string& line : idle_on_traces(*command)) warn(line);
+        else
+            warn_of_idle(*command, job.launches.captures());
+        const FileNames outputs = o->report.outputs();
+        check_outputs(outputs, warn);
         const auto limit = o->threads.apply();
-        advise_if_interrupted(
-            "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "
-            "those");
         Progress progress("compare");
-        double seconds = 0;
-        for (const auto& s : settings)
-            seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, o->report.timed);
-        progress.expect("replay", o->report.timed ? Work::timed_replay : Work::replay, seconds);
-        const auto scene = o->scene.prepare(o->report.outputs(), progress);
-        std::vector<std::unique_ptr<tracer::Capture>> captures;
-        captures.reserve(settings.size());
-        for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-        o->report.replay_and_publish(sources_of(captures), {}, gpus, progress);
+        o->report.publish(run(job, gpus, progress, outputs));
     };
 }
 
@@ -121,11 +104,7 @@ void add_compare(Program& program) {
          "raycache compare sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv",
          "raycache compare courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
          "cranley-patterson+meister,micro-jitter --gpu h100"});
-    command->plan([o, command] {
-        const Inputs inputs = o->inputs.sorted(*command);
-        o->scene.source = inputs.scene;
-        return inputs.scene.empty() ? plan_traces(o, command, inputs.traces) : plan_scene(o, command);
-    });
+    command->plan([o, command] { return plan(o, command); });
 }
 
 }  // namespace raycache::tools

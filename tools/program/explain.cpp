@@ -1,11 +1,7 @@
 // raycache explain: why one trace is kinder to a GPU's caches than another.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "tools/jobs/costs.hpp"
 #include "tools/jobs/explain_job.hpp"
-#include "tools/jobs/heat_map.hpp"
-#include "tools/jobs/launch_source.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/gpu_options.hpp"
@@ -39,81 +35,53 @@ std::string samples_text(std::size_t count) {
     return count == 1 ? "1 sample index" : fmt::format("{} sample indices", count);
 }
 
-void explain_and_print(const Options& o, const cachesim::Gpu& gpu, const std::vector<LaunchSource>& sources,
-                       const std::vector<std::string>& names, Progress& progress) {
-    for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, names[i], "explain");
-    ExplainRequest request;
-    request.sources = {&sources[0], &sources[1]};
-    request.names = {names[0], names[1]};
-    request.gpu = gpu;
-    request.by = o.by == "bounce" ? cachesim::GroupBy::bounce
-                 : o.by == "ray"  ? cachesim::GroupBy::ray
-                                  : cachesim::GroupBy::none;
-    request.timed = !o.counts_only;
-    request.pixels = !o.heat_map.empty();
-    const Explained done = explain(request, progress);
-    const cachesim::Explanation& e = done.explanation;
+void publish(const Options& o, const ExplainResult& result) {
+    const cachesim::Explanation& e = result.explanation;
     Deliveries deliveries;
-    Subject subject{{gpu_json(gpu)}, {}};
-    for (std::size_t i = 0; i < 2; ++i)
-        subject.traces.push_back(trace_json(*sources[i].header, o.scene.source.empty() ? names[i] : ""));
     deliveries.attempt([&] {
-        print(o.json ? o.json.document(cachesim::to_json(e), subject) : cachesim::to_text(e, o.width.columns()));
+        print(o.json ? o.json.document(cachesim::to_json(e), result.subject) : cachesim::to_text(e, o.width.columns()));
     });
-    if (request.pixels)
+    if (!result.maps.empty())
         write_heat_maps(
             o.heat_map,
             fmt::format("{}, N {}, {}, GPU {}", e.scene, e.spp, samples_text(e.base.launches.size()), e.gpu),
-            make_heat_map(e.base.name, *sources[0].header, done.costs[0], gpu),
-            make_heat_map(e.other.name, *sources[1].header, done.costs[1], gpu), deliveries);
+            result.maps[0], result.maps[1], deliveries);
     deliveries.finish(say_failure);
 }
 
-Action plan_scene(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu) {
-    if (o->strategies.size() != 2)
-        throw UsageError(fmt::format("--strategy '{}': expected two names, BASE,OTHER, found {}",
-                                     fmt::join(o->strategies, ","), o->strategies.size()));
-    std::vector<tracer::CaptureSettings> settings;
-    for (const std::string& strategy : o->strategies)
-        settings.push_back(o->sampling.capture(o->scene, o->sequence, strategy, o->spp));
-    return [o, command, gpu, settings] {
-        warn_of_settings(*command, settings);
-        check_outputs(heat_map_files(o->heat_map), warn);
-        const auto limit = o->threads.apply();
-        Progress progress("explain");
-        double seconds = 0;
-        for (const auto& s : settings) seconds += trace_cost(s) + explain_cost(s, gpu.timing && !o->counts_only);
-        progress.expect("explain", Work::replay, seconds);
-        const auto scene = o->scene.prepare(heat_map_files(o->heat_map), progress);
-        std::vector<std::unique_ptr<tracer::Capture>> captures;
-        for (const auto& s : settings) captures.push_back(std::make_unique<tracer::Capture>(*scene, s));
-        explain_and_print(*o, gpu, sources_of(captures), o->strategies, progress);
-    };
-}
-
-Action plan_traces(const std::shared_ptr<const Options>& o, const Command* command, const cachesim::Gpu& gpu,
-                   const std::vector<std::string>& traces) {
-    if (traces.size() != 2)
-        throw UsageError(
-            fmt::format("{} trace file{}; expected two: BASE and OTHER", traces.size(), traces.size() == 1 ? "" : "s"));
-    refuse_overwriting(traces, heat_map_files(o->heat_map));
-    return [o, command, gpu, traces] {
-        for (const std::string& line : idle_on_traces(*command)) warn(line);
-        check_outputs(heat_map_files(o->heat_map), warn);
-        const auto limit = o->threads.apply();
-        Progress progress("explain");
-        const TraceFiles files(traces);
-        explain_and_print(*o, gpu, files.sources, traces, progress);
-    };
-}
-
-Action plan(const std::shared_ptr<Options>& o, const Command& command) {
-    const Inputs inputs = o->inputs.sorted(command);
+Action plan(const std::shared_ptr<Options>& o, const Command* command) {
+    const Inputs inputs = o->inputs.sorted(*command);
     o->scene.source = inputs.scene;
     if (!o->heat_map.empty()) check_heat_map_name(o->heat_map);
-    const cachesim::Gpu gpu = o->gpu.load_one(heat_map_files(o->heat_map), "explain");
-    if (gpu.timing && !o->counts_only) o->gpu.check_timed({gpu});
-    return inputs.scene.empty() ? plan_traces(o, &command, gpu, inputs.traces) : plan_scene(o, &command, gpu);
+    const FileNames outputs = heat_map_files(o->heat_map);
+    ExplainJob job;
+    job.gpu = o->gpu;
+    job.by = o->by == "bounce" ? cachesim::GroupBy::bounce
+             : o->by == "ray"  ? cachesim::GroupBy::ray
+                               : cachesim::GroupBy::none;
+    job.timed = !o->counts_only;
+    job.pixels = !o->heat_map.empty();
+    const cachesim::Gpu gpu = o->gpu.load_one(outputs, "explain");
+    if (gpu.timing && job.timed) o->gpu.check_timed({gpu});
+    job.launches.traces = inputs.traces;
+    if (!job.launches.of_traces()) {
+        job.launches.scene = o->scene;
+        job.launches.sampling = o->sampling;
+        for (const std::string& strategy : o->strategies)
+            job.launches.cases.push_back({strategy, o->sequence, o->spp, {}, {}});
+    }
+    job.check();
+    refuse_overwriting(inputs.traces, outputs);
+    return [o, command, job, gpu, outputs] {
+        if (job.launches.of_traces())
+            for (const std::string& line : idle_on_traces(*command)) warn(line);
+        else
+            warn_of_idle(*command, job.launches.captures());
+        check_outputs(outputs, warn);
+        const auto limit = o->threads.apply();
+        Progress progress("explain");
+        publish(*o, run(job, gpu, progress, outputs));
+    };
 }
 
 }  // namespace
@@ -151,7 +119,7 @@ void add_explain(Program& program) {
     command->examples({"raycache explain courtyard --strategy cranley-patterson,coherent --spp 64 --gpu h100",
                        "raycache explain cp.rct mj.rct --gpu gtx-980-ti",
                        "raycache explain cp.rct mj.rct --gpu gtx-980-ti --by bounce --heatmap why.exr"});
-    command->plan([o, command] { return plan(o, *command); });
+    command->plan([o, command] { return plan(o, command); });
 }
 
 }  // namespace raycache::tools

@@ -195,12 +195,8 @@ std::vector<std::string> idle_on_traces(const Command& command) {
     return lines;
 }
 
-void warn_of_settings(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use) {
-    std::vector<std::string> lines = idle_options(command, cases, use);
-    for (const Case& c : cases)
-        for (const std::string& line : settings_warnings(c))
-            if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-    for (const std::string& line : lines) warn(line);
+void warn_of_idle(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use) {
+    for (const std::string& line : idle_options(command, cases, use)) warn(line);
 }
 
 }  // namespace raycache::tools

@@ -29,8 +29,7 @@ std::vector<std::string> idle_besides(const Command& command, const std::vector<
 /// The same where a command reads trace files, which hold scene and sampling: every option about these.
 std::vector<std::string> idle_on_traces(const Command& command);
 
-/// Warns of everything that is to be said about the settings of these cases before they run: idle options, and what
-/// SamplingStrategy::warnings() says, each line once.
-void warn_of_settings(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use = {});
+/// Warns of idle_options().
+void warn_of_idle(const Command& command, std::span<const tracer::CaptureSettings> cases, const CaseUse& use = {});
 
 }  // namespace raycache::tools

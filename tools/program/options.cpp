@@ -5,18 +5,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <filesystem>
-#include <thread>
-
 #include <limits>
 #include <thread>
-#include "tools/jobs/costs.hpp"
-#include "tools/jobs/version.hpp"
-#include "tools/program/console.hpp"
 
-#include "tools/program/console.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene_name.hpp"
@@ -26,21 +17,6 @@
 
 namespace raycache::tools {
 namespace {
-
-tracer::Vec3 parse_vector(const std::string& text, const char* option) {
-    tracer::Vec3 v;
-    float* out[3] = {&v.x, &v.y, &v.z};
-    const char* at = text.data();
-    const char* end = at + text.size();
-    for (int i = 0; i < 3; ++i) {
-        const auto [stop, error] = std::from_chars(at, end, *out[i]);
-        const bool last = i == 2;
-        if (error != std::errc{} || !std::isfinite(*out[i]) || (last ? stop != end : stop == end || *stop != ','))
-            throw UsageError(fmt::format("{} '{}'; expected three numbers X,Y,Z such as 1.5,2,-3", option, text));
-        at = stop + 1;
-    }
-    return v;
-}
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -54,34 +30,7 @@ constexpr std::uint64_t most_triangles = std::uint64_t{1} << 32;
 /// Of a pixel: the sampling library's own limit.
 constexpr std::uint64_t most_samples = std::uint64_t{1} << 32;
 
-tracer::SceneRequest::Sky parse_sky(const std::string& text) {
-    if (text == "auto") return tracer::SceneRequest::Sky::automatic;
-    if (text == "on") return tracer::SceneRequest::Sky::on;
-    if (text == "off") return tracer::SceneRequest::Sky::off;
-    throw UsageError(fmt::format("--sky '{}'; expected one of: auto, on, off", text));
-}
-
 }  // namespace
-
-std::vector<std::string> settings_warnings(const tracer::CaptureSettings& settings) {
-    tracer::StrategySettings strategy = settings.strategy;
-    strategy.parameters.width = settings.width;
-    return tracer::SamplingStrategy(strategy, tracer::path_dimensions(settings.paths.bounces)).warnings();
-}
-
-Resolution parse_resolution(const std::string& text) {
-    Resolution r{};
-    const char* end = text.data() + text.size();
-    const auto [cross, error] = std::from_chars(text.data(), end, r.width);
-    const bool separated = error == std::errc{} && cross != end && *cross == 'x';
-    const auto [stop, second_error] = separated ? std::from_chars(cross + 1, end, r.height)
-                                                : std::from_chars_result{cross, std::errc::invalid_argument};
-    if (second_error != std::errc{} || stop != end || r.width == 0 || r.height == 0 ||
-        r.width > tracer::max_resolution || r.height > tracer::max_resolution)
-        throw UsageError(fmt::format("--resolution '{}'; expected WIDTHxHEIGHT such as 512x512, each 1 to {}", text,
-                                     tracer::max_resolution));
-    return r;
-}
 
 std::vector<std::string> strategy_names() { return names_of(tracer::decorrelations()); }
 std::vector<std::string> sequence_names() { return names_of(tracer::sequences()); }
@@ -146,41 +95,6 @@ void SceneOptions::add_view(Command& command) {
         ->type_name("WHEN");
     command.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
     command.group("");
-}
-
-std::unique_ptr<tracer::PreparedScene> SceneOptions::prepare(const FileNames& outputs, Progress& progress) const {
-    if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);  // before anything takes time
-    std::error_code unknown;
-    const std::uintmax_t bytes = std::filesystem::file_size(source, unknown);
-    constexpr std::uint64_t usual_triangles = 300000;
-    progress.expect("load", Work::prepare,
-                    unknown ? load_cost(0, detail != 0 ? detail : usual_triangles) : load_cost(bytes, bytes / 100));
-    const Stage stage(progress, "load");
-    tracer::SceneRequest request;
-    request.source = source;
-    request.detail = detail;
-    request.sky = parse_sky(sky);
-    request.camera = camera;
-    if (!eye.empty()) request.eye = parse_vector(eye, "--eye");
-    if (!look_at.empty()) request.look_at = parse_vector(look_at, "--look-at");
-    if (fov != 0) request.vertical_fov = fov;
-    tracer::BvhSettings bvh;
-    bvh.spatial_splits = spatial_splits;
-    tracer::Scene scene = tracer::load_scene(request, warn);
-    refuse_overwriting(scene.files, outputs);
-    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh);
-}
-
-std::string SceneOptions::command() const {
-    std::string text = source;
-    if (detail != 0) text += fmt::format(" --detail {}", detail);
-    if (!camera.empty()) text += " --camera " + camera;
-    if (!eye.empty()) text += " --eye " + eye;
-    if (!look_at.empty()) text += " --look-at " + look_at;
-    if (fov != 0) text += fmt::format(" --fov {}", fov);
-    text += " --sky " + sky;
-    if (spatial_splits) text += " --spatial-splits";
-    return text;
 }
 
 void SamplingOptions::add_picture(Command& command) {
@@ -264,17 +178,6 @@ void SamplingOptions::add_launches(Command& command) {
     command.group("");
 }
 
-tracer::PathSettings SamplingOptions::paths() const {
-    tracer::PathSettings settings;
-    settings.bounces = bounces;
-    settings.russian_roulette = russian_roulette;
-    settings.bounces_diffuse = bounces_diffuse.value_or(settings.bounces_diffuse);
-    settings.bounces_transmission = bounces_transmission.value_or(settings.bounces_transmission);
-    settings.lights = tracer::light_sampling_from(lights);
-    tracer::check(settings);
-    return settings;
-}
-
 void SamplingOptions::add_execution(Command& command) {
     command.group("Launches", true);
     command
@@ -287,85 +190,6 @@ void SamplingOptions::add_execution(Command& command) {
                     "how a wavefront sorts the rays of a bounce before they form warps (see 'raycache list orders')")
         ->choices("ray order", names_of(tracer::ray_orders()));
     command.group("");
-}
-
-tracer::StrategySettings SamplingOptions::strategy(const std::string& sequence, const std::string& decorrelation,
-                                                   std::uint64_t spp) const {
-    tracer::StrategySettings settings;
-    settings.sequence = sequence;
-    settings.decorrelation = decorrelation;
-    tracer::DecorrelationSettings& p = settings.parameters;
-    p.spp = spp;
-    p.seed = seed;
-    p.interleave = interleave;
-    p.width = parse_resolution(resolution).width;
-    p.k_from_discrepancy = k == "discrepancy";
-    if (!p.k_from_discrepancy) p.k = read_real(k, "--k", {});
-    p.full_s = s == "full";
-    if (!p.full_s) p.s = static_cast<unsigned>(read_whole(s, "--s", {1, std::numeric_limits<unsigned>::max()}));
-    if (!mu.empty()) p.mu = read_real(mu, "--mu", {});
-    p.cycles.multiplier = cycles_multiplier;
-    p.cycles.min_samples = cycles_min_samples;
-    p.cycles.noise_threshold.reset();
-    if (cycles_noise_threshold != "off")
-        p.cycles.noise_threshold = read_real(cycles_noise_threshold, "--cycles-noise-threshold", {0, 1});
-    return settings;
-}
-
-/// The options that the strategy reads: another command with them would be warned of (idle_options.hpp).
-std::string SamplingOptions::parameter_command(const tracer::CaptureSettings& settings) const {
-    const tracer::DecorrelationEntry& entry = tracer::find_decorrelation(settings.strategy.decorrelation);
-    const auto reads = [&](tracer::Parameter p) { return entry.reads_parameter(p, settings.strategy.parameters); };
-    std::string text;
-    if (reads(tracer::Parameter::k)) text += fmt::format(" --k {} --s {}", k, s);
-    if (reads(tracer::Parameter::mu)) text += " --mu " + mu;
-    if (reads(tracer::Parameter::cycles_multiplier) && cycles_multiplier != 1)
-        text += fmt::format(" --cycles-multiplier {}", cycles_multiplier);
-    if (reads(tracer::Parameter::cycles_min_samples) && cycles_min_samples != 0)
-        text += fmt::format(" --cycles-min-samples {}", cycles_min_samples);
-    if (reads(tracer::Parameter::cycles_noise_threshold) && cycles_noise_threshold != "0.01")
-        text += " --cycles-noise-threshold " + cycles_noise_threshold;
-    const bool classes = reads(tracer::Parameter::interleave) || settings.thread_map == tracer::ThreadMap::classes;
-    if (classes && interleave != 8) text += fmt::format(" --interleave {}", interleave);
-    return text;
-}
-
-/// Options of paths() that differ from the defaults.
-std::string SamplingOptions::path_command() const {
-    std::string text;
-    if (bounces_diffuse) text += fmt::format(" --bounces-diffuse {}", *bounces_diffuse);
-    if (bounces_transmission) text += fmt::format(" --bounces-transmission {}", *bounces_transmission);
-    if (lights != "auto") text += " --lights " + lights;
-    if (russian_roulette) text += " --russian-roulette";
-    return text;
-}
-
-tracer::CaptureSettings SamplingOptions::capture(const SceneOptions& scene, const std::string& sequence,
-                                                 const std::string& strategy_name, std::uint64_t spp) const {
-    tracer::CaptureSettings settings;
-    const std::size_t plus = strategy_name.find('+');
-    const std::string decorrelation = strategy_name.substr(0, plus);
-    const std::string suffix = plus == std::string::npos ? "" : strategy_name.substr(plus + 1);
-    settings.execution.execution = suffix.empty() ? tracer::execution_from(execution) : tracer::Execution::wavefront;
-    settings.execution.order = suffix.empty() ? order : suffix == "wavefront" ? "none" : suffix;
-    tracer::check_execution(settings.execution);
-    const bool wavefront = settings.execution.execution == tracer::Execution::wavefront;
-    const Resolution size = parse_resolution(resolution);
-    settings.width = size.width;
-    settings.height = size.height;
-    settings.paths = paths();
-    settings.strategy = strategy(sequence, decorrelation, spp);
-    settings.trace_samples = trace_samples;
-    const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
-    settings.thread_map = tracer::thread_map_from(thread_map.empty() ? own_map : thread_map);
-    settings.program = program_name;
-    settings.command = fmt::format(
-        "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{} --bounces {}{} "
-        "--thread-map {}{} --seed {}{}",
-        scene.command(), decorrelation, sequence, spp, std::min(trace_samples, spp), size.width, size.height, bounces,
-        path_command(), tracer::to_string(settings.thread_map), parameter_command(settings), seed,
-        wavefront ? " --execution wavefront --order " + settings.execution.order : "");
-    return settings;
 }
 
 void ThreadOptions::add(Command& command) {

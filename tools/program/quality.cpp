@@ -22,36 +22,36 @@ struct Options {
 };
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    QualityRequest request;
+    QualityJob job = o->common.job();
     for (const std::string& sequence : o->sequences)
         for (const std::uint64_t spp : o->spp)
-            for (const std::string& strategy : o->strategies)
-                request.cases.push_back(o->common.sampling.capture(o->common.scene, sequence, strategy, spp));
-    request.baseline = o->common.baseline_of(o->strategies);
-    request.pairs = o->pairs;
-    request.equal_time = !o->output.empty() && !o->common.gpu.names.empty();
-    const tracer::CaptureSettings& first = request.cases.front();
+            for (const std::string& strategy : o->strategies) job.cases.push_back({strategy, sequence, spp, {}, {}});
+    job.baseline = o->common.baseline_of(o->strategies);
+    job.pairs = o->pairs;
+    job.equal_time = !o->output.empty() && !o->common.gpu.names.empty();
+    const auto captures = capture_settings(job.scene, job.sampling, job.cases);
     std::optional<Crop> crop;
     if (!o->crop.empty()) {
         if (o->output.empty()) throw UsageError("--crop without --output; expected both");
-        crop = parse_crop(o->crop, first.width, first.height);
+        crop = parse_crop(o->crop, captures.front().width, captures.front().height);
     }
-    check(request);
-    return [o, command, request, crop] {
+    job.request();  // checked
+    return [o, command, job, captures, crop] {
         FileNames pictures;
         if (!o->output.empty()) {
             check_picture_folder(o->output);
-            pictures = quality_picture_names(o->output, request.cases);
+            pictures = quality_picture_names(o->output, captures);
         }
         Deliveries deliveries;
         Progress progress("quality");
-        const QualityReport report = o->common.measure(*command, request, pictures, deliveries, progress);
+        const QualityResult result = o->common.measure(*command, job, pictures, deliveries, progress);
+        const QualityReport& report = result.report;
         deliveries.attempt([&] {
             print(o->common.json  ? o->common.json.document(to_json(report), report.subject)
                   : o->common.csv ? to_csv(report)
                                   : to_text(report, o->common.width.columns()));
         });
-        if (!o->output.empty()) write_quality_pictures(o->output, report, crop, deliveries);
+        if (!o->output.empty()) write_quality_pictures(o->output, report, result.pictures, crop, deliveries);
         deliveries.finish(say_failure);
     };
 }

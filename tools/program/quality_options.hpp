@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/jobs/quality_report.hpp"
+#include "tools/jobs/quality_job.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/json_output.hpp"
 #include "tools/program/options.hpp"
@@ -27,10 +27,11 @@ struct QualityOptions {
 
     /// `require_gpu`: --gpu must be given; else it may be.
     void add(Command&, bool require_gpu);
-    /// Fills in what the options of `command` say, checks it, loads the scene, finds the reference and measures.
-    /// `outputs`: what the caller is going to write. A reference that cannot be kept where it was asked for is a failed
-    /// delivery.
-    QualityReport measure(const Command& command, QualityRequest request, const FileNames& outputs, Deliveries&,
+    /// What they ask for, without cases and baseline.
+    QualityJob job() const;
+    /// Checks what concerns the options of `command` alone, warns of what has no effect, and runs the job. `outputs`:
+    /// what the caller is going to write. A reference that cannot be kept where it was asked for is a failed delivery.
+    QualityResult measure(const Command& command, const QualityJob&, const FileNames& outputs, Deliveries&,
                           Progress&) const;
     /// Of these strategies: the one asked for, else Cranley-Patterson where it is among them.
     std::string baseline_of(const std::vector<std::string>& strategies) const;

@@ -1,15 +1,9 @@
 // raycache render: a picture of a scene, to see that it is what one thinks it is.
-#include <fmt/format.h>
-
-#include "tools/jobs/costs.hpp"
-#include "tools/jobs/exposure.hpp"
+#include "tools/jobs/render_job.hpp"
 #include "tools/program/commands.hpp"
-#include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
-#include "tracer/render.hpp"
-#include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -24,28 +18,14 @@ struct Options {
 };
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    tracer::check_image_name(o->output);
-    const Resolution size = parse_resolution(o->sampling.resolution);
-    tracer::CaptureSettings one;
-    one.width = size.width;
-    one.height = size.height;
-    one.paths = o->sampling.paths();
-    one.strategy = o->sampling.strategy(o->sequence, o->decorrelation, o->spp);
-    tracer::check_clamp(o->clamp);
-    const tracer::SamplingStrategy check(one.strategy, tracer::path_dimensions(one.paths.bounces));
-    return [o, command, one] {
-        warn_of_settings(*command, {&one, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
-        const tracer::RenderSettings settings{one.width, one.height, one.paths, one.strategy, o->clamp};
-        check_outputs({o->output}, warn);
+    const RenderJob job{o->scene,    o->sampling, {o->decorrelation, o->sequence, o->spp, {}, {}},
+                        o->exposure, o->clamp,    o->output};
+    const tracer::CaptureSettings settings = job.capture();
+    return [o, command, job, settings] {
+        warn_of_idle(*command, {&settings, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
         const auto limit = o->threads.apply();
-        const std::uint64_t paths = std::uint64_t{settings.width} * settings.height * o->spp;
         Progress progress("render");
-        progress.expect("render", Work::render, render_cost(paths, settings.paths.bounces));
-        const auto scene = o->scene.prepare({o->output}, progress);
-        const Stage stage(progress, "render", paths, "paths");
-        const tracer::Image image =
-            tracer::render(*scene, settings, [&](std::uint64_t done) { stage.add(done, done); });
-        tracer::write_image(o->output, image, o->exposure ? *o->exposure : automatic_exposure(image));
+        run(job, progress);
     };
 }
 

@@ -16,13 +16,15 @@ struct Options {
 };
 
 Action plan(const std::shared_ptr<const Options>& o) {
+    ReplayJob job = o->report.job();
+    job.launches.traces = {o->path};
     const auto gpus = o->report.load_gpus({o->path});
-    return [o, gpus] {
-        check_outputs(o->report.outputs(), warn);
+    return [o, job, gpus] {
+        const FileNames outputs = o->report.outputs();
+        check_outputs(outputs, warn);
         const auto limit = o->threads.apply();
         Progress progress("replay");
-        const TraceFiles files({o->path});
-        o->report.replay_and_publish(files.sources, {o->path}, gpus, progress);
+        o->report.publish(run(job, gpus, progress, outputs));
     };
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "cachesim/report/profiler.hpp"
-#include "tools/jobs/replay_job.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/options.hpp"
 #include "traces/error.hpp"
@@ -32,7 +31,7 @@ std::string baseline_of(const std::vector<Series>& series, const std::string& as
 }
 
 template <class Report>
-void publish(const Report& report, const Subject& subject, const ReportOptions& o) {
+void print_and_save(const Report& report, const Subject& subject, const ReportOptions& o) {
     using cachesim::to_csv, cachesim::to_json, cachesim::to_text;
     const auto text = [&] {
         if constexpr (requires { to_text(report, std::size_t{}); })
@@ -109,23 +108,24 @@ FileNames ReportOptions::outputs() const {
     return {save + ".txt", save + ".json", save + ".csv"};
 }
 
-void ReportOptions::replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
-                                       const std::vector<cachesim::Gpu>& loaded, Progress& progress) const {
-    Subject subject;
-    for (const cachesim::Gpu& gpu : loaded) subject.gpus.push_back(gpu_json(gpu));
-    for (std::size_t i = 0; i < sources.size(); ++i)
-        subject.traces.push_back(trace_json(*sources[i].header, files.empty() ? "" : files[i]));
-    if (timed) {
-        const Predicted all = predict(sources, loaded, progress);
-        return publish(cachesim::make_timed_report(all.times, baseline_of(all.times, baseline), all.traffic), subject,
-                       *this);
-    }
-    const auto series = replay(sources, loaded, progress);
-    const cachesim::Report report = cachesim::make_report(series, baseline_of(series, baseline), parse_by(by));
+ReplayJob ReportOptions::job() const {
+    ReplayJob job;
+    job.gpu = gpus;
+    job.timed = timed;
+    return job;
+}
+
+void ReportOptions::publish(const ReplayResult& result) const {
+    if (timed)
+        return print_and_save(
+            cachesim::make_timed_report(result.times, baseline_of(result.times, baseline), result.series),
+            result.subject, *this);
+    const cachesim::Report report =
+        cachesim::make_report(result.series, baseline_of(result.series, baseline), parse_by(by));
     if (counters.empty())
-        publish(report, subject, *this);
+        print_and_save(report, result.subject, *this);
     else
-        publish(cachesim::ProfilerReport{report}, subject, *this);
+        print_and_save(cachesim::ProfilerReport{report}, result.subject, *this);
 }
 
 }  // namespace raycache::tools

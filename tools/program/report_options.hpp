@@ -4,13 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cachesim/report/report.hpp"
-#include "cachesim/report/timed_report.hpp"
-#include "tools/jobs/launch_source.hpp"
-#include "tools/jobs/outputs.hpp"
+#include "tools/jobs/replay_job.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/json_output.hpp"
-#include "tools/program/progress.hpp"
 #include "tools/program/width_option.hpp"
 
 namespace raycache::tools {
@@ -25,16 +21,16 @@ struct ReportOptions {
 
     void add(Command&, bool with_baseline);
 
-    /// Refuses what cannot be printed together, GPUs that cannot be asked so, and inputs that replay_and_publish()
-    /// would overwrite: all before anything takes time. `inputs`: files that are read beside those of the GPUs.
+    /// Refuses what cannot be printed together, GPUs that cannot be asked so, and inputs that publish() would
+    /// overwrite: all before anything takes time. `inputs`: files that are read beside those of the GPUs.
     std::vector<cachesim::Gpu> load_gpus(const FileNames& inputs) const;
-    /// The files that replay_and_publish() writes.
+    /// The files that publish() writes.
     FileNames outputs() const;
 
-    /// Replays all sources on all GPUs, makes the report, prints it in the chosen format, and saves all formats where
-    /// asked. `files`: the names of the sources, empty for captures.
-    void replay_and_publish(const std::vector<LaunchSource>& sources, const FileNames& files,
-                            const std::vector<cachesim::Gpu>&, Progress&) const;
+    /// What is asked of the GPUs; the launches are the command's.
+    ReplayJob job() const;
+    /// Makes the report of that job's result, prints it in the chosen format, and saves all formats where asked.
+    void publish(const ReplayResult&) const;
 
 private:
     void check() const;

@@ -103,25 +103,23 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
             fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o->swept));
     for (const auto& [option, value] : {std::pair("--max-r8", o->max_r8), std::pair("--max-rmse", o->max_rmse)})
         if (value <= 0) throw UsageError(fmt::format("{} {}; expected a number above 0", option, value));
-    QualityRequest request;
-    const auto add = [&](const std::string& strategy, std::optional<double> mu) {
-        auto& settings =
-            request.cases.emplace_back(o->common.sampling.capture(o->common.scene, o->sequence, strategy, o->spp));
-        settings.strategy.parameters.mu = mu;
+    QualityJob job = o->common.job();
+    const auto add = [&](const std::string& strategy, const std::string& mu) {
+        job.cases.push_back({strategy, o->sequence, o->spp, {}, mu});
     };
-    for (const double mu : o->mus) add(o->swept, mu);
+    for (const double mu : o->mus) add(o->swept, fmt::format("{}", mu));
     std::vector<std::string> others = o->others;
     if (std::find(others.begin(), others.end(), baseline) == others.end()) others.emplace_back(baseline);
-    for (const std::string& strategy : others) add(strategy, std::nullopt);
-    request.baseline = baseline;
+    for (const std::string& strategy : others) add(strategy, {});
+    job.baseline = baseline;
     if (!o->common.baseline.empty() && o->common.baseline != baseline)
         throw UsageError(
             fmt::format("--baseline {}; expected {}, which a sweep is held against", o->common.baseline, baseline));
-    check(request);
-    return [o, command, request] {
+    job.request();  // checked
+    return [o, command, job] {
         Deliveries deliveries;
         Progress progress("sweep");
-        const QualityReport report = o->common.measure(*command, request, {}, deliveries, progress);
+        const QualityReport report = o->common.measure(*command, job, {}, deliveries, progress).report;
         const Recommendation advice = recommend(*o, report);
         deliveries.attempt([&] {
             print(o->common.json ? o->common.json.document(to_json(report, &advice), report.subject)
