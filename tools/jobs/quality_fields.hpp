@@ -1,0 +1,199 @@
+// The keys of the result of a quality job.
+#pragma once
+
+#include "tools/jobs/result_fields.hpp"
+
+namespace raycache::tools {
+
+template <>
+struct EnumNames<tracer::ThreadMap> {
+    static constexpr std::array all{std::pair{tracer::ThreadMap::tile, "tile"},
+                                    std::pair{tracer::ThreadMap::samples, "samples"},
+                                    std::pair{tracer::ThreadMap::classes, "classes"}};
+};
+
+template <>
+struct EnumNames<tracer::Execution> {
+    static constexpr std::array all{std::pair{tracer::Execution::megakernel, "megakernel"},
+                                    std::pair{tracer::Execution::wavefront, "wavefront"}};
+};
+
+template <>
+struct EnumNames<tracer::LightSampling> {
+    static constexpr std::array all{
+        std::pair{tracer::LightSampling::automatic, "auto"}, std::pair{tracer::LightSampling::bsdf, "bsdf"},
+        std::pair{tracer::LightSampling::nee, "nee"}, std::pair{tracer::LightSampling::mis, "mis"}};
+};
+
+template <>
+struct Fields<tracer::PathSettings> {
+    using S = tracer::PathSettings;
+    static constexpr std::tuple all{Field{"bounces", &S::bounces}, Field{"russian_roulette", &S::russian_roulette},
+                                    Field{"bounces_diffuse", &S::bounces_diffuse},
+                                    Field{"bounces_transmission", &S::bounces_transmission},
+                                    Field{"lights", &S::lights}};
+};
+
+template <>
+struct Fields<tracer::CyclesSettings> {
+    using S = tracer::CyclesSettings;
+    static constexpr std::tuple all{Field{"multiplier", &S::multiplier}, Field{"min_samples", &S::min_samples},
+                                    Field{"noise_threshold", &S::noise_threshold}};
+};
+
+template <>
+struct Fields<tracer::DecorrelationSettings> {
+    using S = tracer::DecorrelationSettings;
+    static constexpr std::tuple all{Field{"spp", &S::spp},
+                                    Field{"seed", &S::seed},
+                                    Field{"k", &S::k},
+                                    Field{"k_from_discrepancy", &S::k_from_discrepancy},
+                                    Field{"s", &S::s},
+                                    Field{"full_s", &S::full_s},
+                                    Field{"mu", &S::mu},
+                                    Field{"cycles", &S::cycles},
+                                    Field{"interleave", &S::interleave},
+                                    Field{"dimensions", &S::dimensions},
+                                    Field{"width", &S::width}};
+};
+
+template <>
+struct Fields<tracer::StrategySettings> {
+    using S = tracer::StrategySettings;
+    static constexpr std::tuple all{Field{"sequence", &S::sequence}, Field{"decorrelation", &S::decorrelation},
+                                    Field{"parameters", &S::parameters},
+                                    Field{"independent_pair", &S::independent_pair}};
+};
+
+template <>
+struct Fields<tracer::ExecutionSettings> {
+    using S = tracer::ExecutionSettings;
+    static constexpr std::tuple all{Field{"execution", &S::execution}, Field{"order", &S::order}};
+};
+
+template <>
+struct Fields<tracer::CaptureSettings> {
+    using S = tracer::CaptureSettings;
+    static constexpr std::tuple all{Field{"width", &S::width},
+                                    Field{"height", &S::height},
+                                    Field{"paths", &S::paths},
+                                    Field{"strategy", &S::strategy},
+                                    Field{"trace_samples", &S::trace_samples},
+                                    Field{"thread_map", &S::thread_map},
+                                    Field{"execution", &S::execution},
+                                    Field{"program", &S::program},
+                                    Field{"command", &S::command}};
+};
+
+template <>
+struct Fields<tracer::Measured> {
+    using S = tracer::Measured;
+    static constexpr std::tuple all{Field{"value", &S::value}, Field{"half_width", &S::half_width},
+                                    Field{"below", &S::below}, Field{"above", &S::above},
+                                    Field{"reference_share", &S::reference_share}};
+};
+
+template <>
+struct Fields<tracer::FewPixels> {
+    using S = tracer::FewPixels;
+    static constexpr std::tuple all{Field{"count", &S::count}, Field{"share", &S::share},
+                                    Field{"largest", &S::largest}};
+};
+
+template <>
+struct Fields<tracer::ErrorSums::Blocks> {
+    using S = tracer::ErrorSums::Blocks;
+    static constexpr std::tuple all{Field{"columns", &S::columns}, Field{"rows", &S::rows}, Field{"mean", &S::mean}};
+};
+
+/// pixel_square is empty in a result.
+template <>
+struct Fields<tracer::ErrorSums> {
+    using S = tracer::ErrorSums;
+    static constexpr std::tuple all{Field{"seeds", &S::seeds}, Field{"reference", &S::reference},
+                                    Field{"noise", &S::noise}, Field{"blocks", &S::blocks}};
+};
+
+template <>
+struct Fields<tracer::ErrorMeasures> {
+    using S = tracer::ErrorMeasures;
+    static constexpr std::tuple all{Field{"rmse", &S::rmse},
+                                    Field{"relative_rmse", &S::relative_rmse},
+                                    Field{"robust_rmse", &S::robust_rmse},
+                                    Field{"r8", &S::r8},
+                                    Field{"block_rmse", &S::block_rmse},
+                                    Field{"mean_error", &S::mean_error},
+                                    Field{"reference_rmse", &S::reference_rmse},
+                                    Field{"reference_luminance", &S::reference_luminance},
+                                    Field{"structured_mse", &S::structured_mse},
+                                    Field{"z_pixels", &S::z_pixels},
+                                    Field{"z_seeds", &S::z_seeds},
+                                    Field{"few_pixels", &S::few_pixels},
+                                    Field{"sums", &S::sums}};
+};
+
+template <>
+struct Fields<tracer::RmseRatio> {
+    using S = tracer::RmseRatio;
+    static constexpr std::tuple all{Field{"value", &S::value}, Field{"robust", &S::robust},
+                                    Field{"decided_by_pixels", &S::decided_by_pixels},
+                                    Field{"baseline_is_zero", &S::baseline_is_zero}};
+};
+
+template <>
+struct Fields<cachesim::Estimate> {
+    using S = cachesim::Estimate;
+    static constexpr std::tuple all{Field{"mean", &S::mean}, Field{"half_width", &S::half_width}};
+};
+
+template <>
+struct Fields<PairEffect> {
+    using S = PairEffect;
+    static constexpr std::tuple all{Field{"pair", &S::pair}, Field{"share", &S::share}};
+};
+
+template <>
+struct Fields<QualityRow::Timing> {
+    using S = QualityRow::Timing;
+    static constexpr std::tuple all{Field{"seconds", &S::seconds}, Field{"speed_up", &S::speed_up}};
+};
+
+template <>
+struct Fields<QualityRow::EqualTime> {
+    using S = QualityRow::EqualTime;
+    static constexpr std::tuple all{Field{"spp", &S::spp}, Field{"errors", &S::errors}};
+};
+
+template <>
+struct Fields<QualityRow> {
+    using S = QualityRow;
+    static constexpr std::tuple all{Field{"settings", &S::settings}, Field{"parameters", &S::parameters},
+                                    Field{"errors", &S::errors},     Field{"baseline", &S::baseline},
+                                    Field{"ratio", &S::ratio},       Field{"pairs", &S::pairs},
+                                    Field{"timing", &S::timing},     Field{"equal_time", &S::equal_time}};
+};
+
+template <>
+struct Fields<QualityReport> {
+    using S = QualityReport;
+    static constexpr std::tuple all{Field{"scene", &S::scene},
+                                    Field{"baseline", &S::baseline},
+                                    Field{"gpu", &S::gpu},
+                                    Field{"reference_path", &S::reference_path},
+                                    Field{"reference_spp", &S::reference_spp},
+                                    Field{"repeats", &S::repeats},
+                                    Field{"clamp", &S::clamp},
+                                    Field{"width", &S::width},
+                                    Field{"height", &S::height},
+                                    Field{"rows", &S::rows},
+                                    Field{"notes", &S::notes},
+                                    Field{"subject", &S::subject}};
+};
+
+template <>
+struct Fields<QualityResult> {
+    using S = QualityResult;
+    static constexpr std::tuple all{Field{"report", &S::report}};
+};
+
+}  // namespace raycache::tools

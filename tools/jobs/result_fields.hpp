@@ -1,0 +1,269 @@
+// The keys of jobs' results: every member of the plain values in them.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "tools/jobs/settings_fields.hpp"
+
+namespace raycache::tools {
+
+template <>
+struct Fields<Subject> {
+    using S = Subject;
+    static constexpr std::tuple all{Field{"gpus", &S::gpus}, Field{"traces", &S::traces}};
+};
+
+template <>
+struct Fields<CaptureResult> {
+    using S = CaptureResult;
+    static constexpr std::tuple all{Field{"trace", &S::trace}, Field{"warps", &S::warps}, Field{"rays", &S::rays}};
+};
+
+template <>
+struct Fields<RenderResult> {
+    using S = RenderResult;
+    static constexpr std::tuple all{Field{"width", &S::width}, Field{"height", &S::height},
+                                    Field{"exposure", &S::exposure}};
+};
+
+// Counts of a functional replay.
+
+template <>
+struct Fields<cachesim::Counters> {
+    using S = cachesim::Counters;
+    static constexpr std::tuple all{Field{"rays", &S::rays},
+                                    Field{"steps", &S::steps},
+                                    Field{"lane_accesses", &S::lane_accesses},
+                                    Field{"warp_accesses", &S::warp_accesses},
+                                    Field{"loads", &S::loads},
+                                    Field{"l1_requests", &S::l1_requests},
+                                    Field{"sectors", &S::sectors},
+                                    Field{"l1_hits", &S::l1_hits},
+                                    Field{"l2_sectors", &S::l2_sectors},
+                                    Field{"l2_hits", &S::l2_hits},
+                                    Field{"l3_sectors", &S::l3_sectors},
+                                    Field{"l3_hits", &S::l3_hits},
+                                    Field{"dram_sectors", &S::dram_sectors},
+                                    Field{"written_sectors", &S::written_sectors},
+                                    Field{"sort_sectors", &S::sort_sectors},
+                                    Field{"dram_first_sectors", &S::dram_first_sectors}};
+};
+
+template <>
+struct EnumNames<traces::RayType> {
+    static constexpr std::array all{std::pair{traces::RayType::camera, "camera"},
+                                    std::pair{traces::RayType::bounce, "bounce"},
+                                    std::pair{traces::RayType::shadow, "shadow"}};
+};
+
+template <>
+struct Fields<cachesim::RayGroup> {
+    using S = cachesim::RayGroup;
+    static constexpr std::tuple all{Field{"ray", &S::ray}, Field{"bounce", &S::bounce}, Field{"by_kind", &S::by_kind},
+                                    Field{"rays", &S::rays}};
+};
+
+template <>
+struct Fields<cachesim::LaunchStatistics> {
+    using S = cachesim::LaunchStatistics;
+    static constexpr std::tuple all{Field{"sample", &S::sample}, Field{"groups", &S::groups}};
+};
+
+template <>
+struct Fields<cachesim::Series> {
+    using S = cachesim::Series;
+    static constexpr std::tuple all{Field{"scene", &S::scene},
+                                    Field{"strategy", &S::strategy},
+                                    Field{"sequence", &S::sequence},
+                                    Field{"parameters", &S::parameters},
+                                    Field{"thread_map", &S::thread_map},
+                                    Field{"gpu", &S::gpu},
+                                    Field{"spp", &S::spp},
+                                    Field{"sector_bytes", &S::sector_bytes},
+                                    Field{"levels", &S::levels},
+                                    Field{"launches", &S::launches}};
+};
+
+// A replay in time.
+
+template <>
+struct Fields<cachesim::LevelAnswers> {
+    using S = cachesim::LevelAnswers;
+    static constexpr std::tuple all{Field{"hits", &S::hits}, Field{"merges", &S::merges},
+                                    Field{"line_misses", &S::line_misses}, Field{"sector_misses", &S::sector_misses}};
+};
+
+template <>
+struct Fields<cachesim::TimedStatistics::Resource> {
+    using S = cachesim::TimedStatistics::Resource;
+    static constexpr std::tuple all{Field{"busy", &S::busy}, Field{"copies", &S::copies}};
+};
+
+template <>
+struct Fields<cachesim::TimedStatistics> {
+    using S = cachesim::TimedStatistics;
+    static constexpr std::tuple all{Field{"sample", &S::sample},
+                                    Field{"cycles", &S::cycles},
+                                    Field{"seconds", &S::seconds},
+                                    Field{"rays", &S::rays},
+                                    Field{"warp_accesses", &S::warp_accesses},
+                                    Field{"lane_accesses", &S::lane_accesses},
+                                    Field{"instructions", &S::instructions},
+                                    Field{"loads", &S::loads},
+                                    Field{"l1", &S::l1},
+                                    Field{"l2", &S::l2},
+                                    Field{"l3", &S::l3},
+                                    Field{"dram_sectors", &S::dram_sectors},
+                                    Field{"issue", &S::issue},
+                                    Field{"l1_port", &S::l1_port},
+                                    Field{"crossbar", &S::crossbar},
+                                    Field{"l2_slices", &S::l2_slices},
+                                    Field{"dram", &S::dram},
+                                    Field{"l1_tags", &S::l1_tags},
+                                    Field{"l1_data", &S::l1_data},
+                                    Field{"l1_mshrs", &S::l1_mshrs},
+                                    Field{"l2_mshrs", &S::l2_mshrs},
+                                    Field{"visit_cycles", &S::visit_cycles},
+                                    Field{"warps", &S::warps},
+                                    Field{"warp_cycles", &S::warp_cycles},
+                                    Field{"warp_slots", &S::warp_slots},
+                                    Field{"peak_l2_gb_s", &S::peak_l2_gb_s},
+                                    Field{"peak_dram_gb_s", &S::peak_dram_gb_s}};
+};
+
+template <>
+struct Fields<cachesim::TimedSeries> {
+    using S = cachesim::TimedSeries;
+    static constexpr std::tuple all{Field{"scene", &S::scene},
+                                    Field{"strategy", &S::strategy},
+                                    Field{"sequence", &S::sequence},
+                                    Field{"parameters", &S::parameters},
+                                    Field{"thread_map", &S::thread_map},
+                                    Field{"gpu", &S::gpu},
+                                    Field{"spp", &S::spp},
+                                    Field{"sector_bytes", &S::sector_bytes},
+                                    Field{"no_time", &S::no_time},
+                                    Field{"launches", &S::launches}};
+};
+
+template <>
+struct Fields<ReplayResult> {
+    using S = ReplayResult;
+    static constexpr std::tuple all{Field{"subject", &S::subject}, Field{"series", &S::series},
+                                    Field{"times", &S::times}};
+};
+
+// An explanation.
+
+template <>
+struct Fields<cachesim::MissCounts> {
+    using S = cachesim::MissCounts;
+    static constexpr std::tuple all{Field{"lookups", &S::lookups}, Field{"compulsory", &S::compulsory},
+                                    Field{"capacity", &S::capacity}, Field{"conflict", &S::conflict},
+                                    Field{"lucky_hits", &S::lucky_hits}};
+};
+
+/// By their index; most of them are nothing and left out.
+template <>
+struct Codec<std::vector<cachesim::MissCounts>> {
+    using List = std::vector<cachesim::MissCounts>;
+    static Json write(const List& list) {
+        Json counts = Json::object();
+        for (std::size_t i = 0; i < list.size(); ++i)
+            if (list[i] != cachesim::MissCounts{}) counts[std::to_string(i)] = write_value(list[i]);
+        return {{"size", list.size()}, {"counts", counts}};
+    }
+    static void read(const Reader& reader, const Json& json, const std::string& place, List& list) {
+        constexpr std::size_t most = 1 << 16;  // far above any: a damaged file must not take all memory
+        const bool whole = json.is_object() && json.contains("counts") && json["counts"].is_object() &&
+                           json.contains("size") && json["size"].is_number_unsigned() && json["size"] <= most;
+        if (!whole) reader.wrong(place, "{\"size\": N, \"counts\": {…}}", json);
+        list.assign(json["size"].get<std::size_t>(), {});
+        for (const auto& [key, value] : json["counts"].items()) {
+            const bool digits = key.find_first_not_of("0123456789") == std::string::npos && !key.empty();
+            const std::size_t index = digits && key.size() < 6 ? std::stoul(key) : most;
+            if (index >= list.size()) reader.wrong(place + ".counts", "an index below the size", key);
+            reader.read(value, place + ".counts." + key, list[index]);
+        }
+    }
+};
+
+template <>
+struct Fields<cachesim::LevelFindings> {
+    using S = cachesim::LevelFindings;
+    static constexpr std::tuple all{Field{"by_kind", &S::by_kind}, Field{"by_ray", &S::by_ray},
+                                    Field{"by_depth", &S::by_depth}};
+};
+
+template <>
+struct Fields<cachesim::Sharing> {
+    using S = cachesim::Sharing;
+    static constexpr std::tuple all{Field{"same_warp", &S::same_warp}, Field{"same_cta", &S::same_cta},
+                                    Field{"other_cta", &S::other_cta}};
+};
+
+template <>
+struct Fields<cachesim::Findings> {
+    using S = cachesim::Findings;
+    static constexpr std::tuple all{Field{"levels", &S::levels}, Field{"sharing", &S::sharing}};
+};
+
+template <>
+struct Fields<cachesim::ExplainedTrace> {
+    using S = cachesim::ExplainedTrace;
+    static constexpr std::tuple all{Field{"name", &S::name}, Field{"launches", &S::launches},
+                                    Field{"findings", &S::findings}};
+};
+
+/// By its name.
+template <>
+struct Codec<cachesim::NamedIdeal> {
+    static Json write(const cachesim::NamedIdeal& ideal) { return ideal.name; }
+    static void read(const Reader& reader, const Json& json, const std::string& place, cachesim::NamedIdeal& ideal) {
+        const auto known = cachesim::idealised_replays();
+        const auto at = std::find_if(known.begin(), known.end(), [&](const cachesim::NamedIdeal& one) {
+            return json.is_string() && json.get<std::string>() == one.name;
+        });
+        if (at == known.end()) reader.wrong(place, "the name of an idealised replay", json);
+        ideal = *at;
+    }
+};
+
+template <>
+struct Fields<cachesim::SpeedUp> {
+    using S = cachesim::SpeedUp;
+    static constexpr std::tuple all{Field{"replay", &S::replay}, Field{"base", &S::base}, Field{"other", &S::other},
+                                    Field{"base_cycles", &S::base_cycles}, Field{"other_cycles", &S::other_cycles}};
+};
+
+template <>
+struct Fields<cachesim::Explanation> {
+    using S = cachesim::Explanation;
+    static constexpr std::tuple all{Field{"scene", &S::scene},    Field{"gpu", &S::gpu},
+                                    Field{"spp", &S::spp},        Field{"sector_bytes", &S::sector_bytes},
+                                    Field{"by", &S::by},          Field{"base", &S::base},
+                                    Field{"other", &S::other},    Field{"speed_ups", &S::speed_ups},
+                                    Field{"no_time", &S::no_time}};
+};
+
+template <>
+struct Fields<HeatMap> {
+    using S = HeatMap;
+    static constexpr std::tuple all{Field{"name", &S::name},
+                                    Field{"lanes", &S::lanes},
+                                    Field{"width", &S::width},
+                                    Field{"height", &S::height},
+                                    Field{"dram_bytes", &S::dram_bytes},
+                                    Field{"l1_miss_rate", &S::l1_miss_rate},
+                                    Field{"active_lanes", &S::active_lanes}};
+};
+
+template <>
+struct Fields<ExplainResult> {
+    using S = ExplainResult;
+    static constexpr std::tuple all{Field{"subject", &S::subject}, Field{"explanation", &S::explanation},
+                                    Field{"maps", &S::maps}};
+};
+
+}  // namespace raycache::tools
