@@ -62,7 +62,7 @@ class ReportPage(ProgramTest):
         page = self.page(report)
         for row in report["rows"]:
             if row["verdict"]:
-                self.assertIn(html.escape(row["verdict"]["text"]), page)
+                self.assertIn(row["verdict"]["text"], html.unescape(page))
             self.assertIn(f"{100 * row['l1_hit_rate']['mean']:.1f} %", page)
         self.assertEqual(self.page(report), page)
         self.assertNotIn("nan", page.split("data:image")[0])
