@@ -27,15 +27,13 @@ public:
     };
 
     void add(const IssuedAccess& a) {
-        accesses_.push_back({a.record.mask, a.warp, static_cast<std::uint32_t>(elements_.size()), a.record.region});
+        if (a.number >= accesses_.size()) accesses_.resize(2 * std::size_t{a.number} + 1);
+        accesses_[a.number] = {a.record.mask, a.warp, static_cast<std::uint32_t>(elements_.size()), a.record.region};
         elements_.insert(elements_.end(), a.elements, a.elements + a.record.lanes());
     }
-    void clear() {
-        accesses_.clear();
-        elements_.clear();
-    }
+    void clear() { elements_.clear(); }
 
-    /// By ServedRequest::access.
+    /// By IssuedAccess::number.
     const Access& operator[](std::uint32_t access) const { return accesses_[access]; }
 
     /// Calls use(lane, element, sectors) for each active lane, lowest first, whose object lies in some of the sectors
@@ -63,8 +61,8 @@ private:
         std::uint32_t stride, size;
     };
     std::uint32_t line_bytes_, sector_bytes_;
-    std::vector<Place> places_;  ///< by region
-    std::vector<Access> accesses_;
+    std::vector<Place> places_;     ///< by region
+    std::vector<Access> accesses_;  ///< by number; those of other windows are garbage
     std::vector<std::uint32_t> elements_;
 };
 

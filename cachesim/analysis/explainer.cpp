@@ -51,16 +51,24 @@ Explainer::Explainer(const Gpu& gpu, const std::vector<traces::Region>& regions,
     findings_.levels.resize(levels);
 }
 
-void Explainer::issued(const IssuedAccess& access) {
-    log_.add(access);
-    if (with_pixels_) pixel_costs_.add_access(access);
+void Explainer::issued(std::span<const IssuedAccess> accesses) {
+    for (const IssuedAccess& access : accesses) {
+        log_.add(access);
+        if (with_pixels_ && access.counted) pixel_costs_.add_access(access);
+    }
 }
 
-void Explainer::served(std::size_t level, const ServedRequest& request) {
+void Explainer::served(std::size_t level, std::span<const ServedRequest> requests) {
+    for (const ServedRequest& request : requests) explain(level, request);
+}
+
+void Explainer::explain(std::size_t level, const ServedRequest& request) {
     const std::size_t cache = level == 0 ? request.sm * l1_per_sm_ + request.cache : request.sm;
     const std::uint8_t region = log_[request.access].region;
     const auto shadow =
         shadows_[level][cache].look_up(ids_.id(request.address / line_bytes_, region), request.asked, request.missing);
+    if (level == 0) find_owners(request, cache, shadow.number);
+    if (!request.counted) return;
     const Verdict verdict = judge(request, shadow);
 
     LevelFindings& found = findings_.levels[level];
@@ -75,7 +83,6 @@ void Explainer::served(std::size_t level, const ServedRequest& request) {
             return left != 0;
         });
     }
-    if (level == 0) find_owners(request, cache, shadow.number);
     if (!with_pixels_) return;
     if (level == 0) pixel_costs_.add_l1(log_, request);
     if (level + 1 == shadows_.size()) pixel_costs_.add_last(log_, request);
@@ -87,7 +94,7 @@ void Explainer::find_owners(const ServedRequest& request, std::size_t cache, std
     if (fetchers.size() == of_line) fetchers.resize(of_line + sectors_per_line_);
     const std::uint32_t warp = log_[request.access].warp;
     Sharing& sharing = findings_.sharing;
-    for (std::uint32_t left = request.asked & ~request.missing; left != 0; left &= left - 1) {
+    for (std::uint32_t left = request.counted ? request.asked & ~request.missing : 0; left != 0; left &= left - 1) {
         const std::uint32_t fetcher = fetchers[of_line + static_cast<unsigned>(std::countr_zero(left))];
         ++(fetcher == warp                                     ? sharing.same_warp
            : fetcher / warps_per_cta_ == warp / warps_per_cta_ ? sharing.same_cta

@@ -4,12 +4,14 @@
 // misses into compulsory, capacity and conflict. A look-up of a sector is charged to the kind of object, the ray type
 // and bounce, and the BVH depth it was for; where several lanes ask for a sector, its depth is that of the lowest
 // lane's object. For each sector in an L1 the warp that fetched it is kept, which tells whom a later hit owes it to.
+// Requests that the replay does not count change what the caches hold, and are not counted here either.
 //
 // Memory: the lines that each cache was ever asked for, and the accesses of one window of rounds.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "cachesim/analysis/access_log.hpp"
@@ -35,11 +37,12 @@ public:
     const PixelCosts& pixel_costs() const { return pixel_costs_; }
 
     bool wants(std::size_t, std::uint32_t) const override { return true; }
-    void issued(const IssuedAccess&) override;
-    void served(std::size_t level, const ServedRequest&) override;
+    void issued(std::span<const IssuedAccess>) override;
+    void served(std::size_t level, std::span<const ServedRequest>) override;
     void end_window() override { log_.clear(); }
 
 private:
+    void explain(std::size_t level, const ServedRequest&);
     void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t line);
 
     std::uint32_t l1_per_sm_, warps_per_cta_, sectors_per_line_, line_bytes_;

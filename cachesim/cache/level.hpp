@@ -1,4 +1,4 @@
-// One level of sectored set-associative caches of equal geometry: all L1s of the GPU, or its one L2.
+// Sectored set-associative caches of equal geometry: the L1s of an SM, or the one L2 of a GPU.
 //
 // A look-up of a line that is absent evicts a line and fetches the wanted sectors only; a look-up of a line that is
 // present but lacks wanted sectors (a sector miss) fetches just these. Fill can add neighbours to what is fetched. What
@@ -14,12 +14,19 @@
 
 namespace raycache::cachesim {
 
+/// Some caches of a level, neighbours in their numbering.
+struct CacheRange {
+    CacheRange(unsigned n, unsigned from = 0) : count(n), first(from) {}  // NOLINT(google-explicit-constructor)
+
+    unsigned count, first;
+};
+
 /// Looks up runs of requests, so that the call through the table of the policy costs little per look-up.
 class Level {
 public:
     virtual ~Level() = default;
 
-    /// Looks up `count` lines in order, each in its set (numbered through all slices of all caches of the level), and
+    /// Looks up `count` lines in order, each in its set (numbered through all slices of all these caches), and
     /// leaves in `sectors` those that it fetched: the wanted ones that were missing, and what Fill adds.
     virtual void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
                          std::size_t count) = 0;
@@ -33,10 +40,10 @@ template <class Policy>
 class LevelWith final : public Level {
 public:
     template <class... More>
-    LevelWith(const CacheGeometry& geometry, unsigned caches, More... more)
+    LevelWith(const CacheGeometry& geometry, CacheRange caches, More... more)
         : fill_(geometry),
-          policy_(geometry.slices * geometry.sets * caches, geometry.ways, geometry.line_bytes / geometry.sector_bytes,
-                  more...) {}
+          policy_(geometry.slices * geometry.sets * caches.count, geometry.ways,
+                  geometry.line_bytes / geometry.sector_bytes, more...) {}
 
     void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
                  std::size_t count) override {

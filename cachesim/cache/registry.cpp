@@ -17,7 +17,7 @@ namespace {
 
 struct Entry {
     std::string_view name;
-    std::unique_ptr<Level> (*make)(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+    std::unique_ptr<Level> (*make)(const CacheGeometry&, CacheRange caches, std::uint64_t lines, InstructionSet);
     std::unique_ptr<VictimOrder> (*order)(const CacheGeometry&, unsigned cache);
 };
 
@@ -38,7 +38,7 @@ const Entry& entry_of(const CacheGeometry& geometry) {
 
 }  // namespace
 
-std::unique_ptr<Level> make_level(const CacheGeometry& geometry, unsigned caches, std::uint64_t lines,
+std::unique_ptr<Level> make_level(const CacheGeometry& geometry, CacheRange caches, std::uint64_t lines,
                                   InstructionSet instructions) {
     return entry_of(geometry).make(geometry, caches, lines, instructions);
 }

@@ -11,9 +11,9 @@
 
 namespace raycache::cachesim {
 
-/// `caches` empty caches of this geometry for lines whose numbers are below `lines`. Throws Error if the policy is
+/// Empty caches of this geometry for lines whose numbers are below `lines`. Throws Error if the policy is
 /// unknown. The geometry must have passed find_problem().
-std::unique_ptr<Level> make_level(const CacheGeometry&, unsigned caches, std::uint64_t lines,
+std::unique_ptr<Level> make_level(const CacheGeometry&, CacheRange caches, std::uint64_t lines,
                                   InstructionSet = best_instruction_set());
 
 /// What a timed replay asks whom to evict from one cache, number `cache` of its level; nothing for lru.

@@ -31,7 +31,7 @@ SetFinder::SetFinder(const CacheGeometry& geometry, const LineIds& ids, Instruct
     form_ = Form::tables;
 }
 
-RAYCACHE_AVX512 void SetFinder::find_by_tables(const Lookups& lookups) {
+RAYCACHE_AVX512 void SetFinder::find_by_tables(const Lookups& lookups, std::uint32_t* sets) const {
     constexpr std::size_t lanes = 16;
     const auto& tables = map_.tables();
     const std::size_t bytes = std::min<std::size_t>(tables.size(), 4);
@@ -51,7 +51,7 @@ RAYCACHE_AVX512 void SetFinder::find_by_tables(const Lookups& lookups) {
                 set, _mm512_i32gather_epi32(_mm512_and_si512(line, all(0xff)), tables[byte].data(), sizeof(int)));
             line = _mm512_srli_epi32(line, 8);
         }
-        _mm512_storeu_si512(&sets_[i], set);
+        _mm512_storeu_si512(&sets[i], set);
     }
 }
 

@@ -17,27 +17,36 @@ public:
     /// `ids` must outlive this object.
     SetFinder(const CacheGeometry&, const LineIds& ids, InstructionSet);
 
-    /// Sets of the look-ups, numbered through all caches of the level. Of the access behind a look-up,
-    /// region_of(access) and cache_of(access) say where its line lies and which cache is asked.
-    template <class RegionOf, class CacheOf>
-    const std::uint32_t* operator()(const Lookups& lookups, const RegionOf& region_of, const CacheOf& cache_of) {
-        if (sets_.size() < lookups.count + room) sets_.resize(2 * lookups.count + room);
+    /// Sets of the look-ups in a cache. Of the access behind a look-up, region_of(access) says where its line lies.
+    /// `place`: where the sets may be put.
+    template <class RegionOf>
+    std::uint32_t* operator()(const Lookups& lookups, const RegionOf& region_of,
+                              std::vector<std::uint32_t>& place) const {
+        if (place.size() < lookups.count + room) place.resize(2 * lookups.count + room);
         const std::uint32_t* const lines = lookups.lines.data();
         const std::uint32_t* const accesses = lookups.accesses.data();
-        std::uint32_t* const sets = sets_.data();
+        std::uint32_t* const sets = place.data();
         switch (form_) {
             case Form::low_bits:
                 for (std::size_t i = 0; i < lookups.count; ++i) sets[i] = lines[i] & (sets_per_cache_ - 1);
                 break;
             case Form::tables:
-                find_by_tables(lookups);
+                find_by_tables(lookups, sets);
                 break;
             case Form::any:
                 for (std::size_t i = 0; i < lookups.count; ++i)
                     sets[i] = static_cast<std::uint32_t>(map_(ids_.line(lines[i], region_of(accesses[i]))));
                 break;
         }
-        for (std::size_t i = 0; i < lookups.count; ++i) sets[i] += cache_of(accesses[i]) * sets_per_cache_;
+        return sets;
+    }
+
+    /// The same, numbered through some caches, of which cache_of(access) is asked.
+    template <class RegionOf, class CacheOf>
+    const std::uint32_t* operator()(const Lookups& lookups, const RegionOf& region_of, const CacheOf& cache_of,
+                                    std::vector<std::uint32_t>& place) const {
+        std::uint32_t* const sets = (*this)(lookups, region_of, place);
+        for (std::size_t i = 0; i < lookups.count; ++i) sets[i] += cache_of(lookups.accesses[i]) * sets_per_cache_;
         return sets;
     }
 
@@ -49,7 +58,7 @@ private:
     };
     static constexpr std::size_t room = 16;  ///< for a vector that is written beyond the last look-up
 
-    void find_by_tables(const Lookups&);
+    void find_by_tables(const Lookups&, std::uint32_t* sets) const;
 
     LineMap map_;
     const LineIds& ids_;
@@ -60,7 +69,6 @@ private:
         std::uint32_t first, offset, high;
     };
     std::vector<Run> runs_;
-    std::vector<std::uint32_t> sets_;
 };
 
 }  // namespace raycache::cachesim

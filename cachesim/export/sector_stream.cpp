@@ -13,7 +13,11 @@ SectorStream::SectorStream(Choice choice, const SectorFormat& format, std::uint3
                            std::function<void(std::string_view)> write)
     : choice_(choice), format_(format), sector_bytes_(sector_bytes), write_(std::move(write)), pending_(format.head) {}
 
-void SectorStream::served(std::size_t /*level*/, const ServedRequest& request) {
+void SectorStream::served(std::size_t /*level*/, std::span<const ServedRequest> requests) {
+    for (const ServedRequest& request : requests) write(request);
+}
+
+void SectorStream::write(const ServedRequest& request) {
     if (choice_.l1 && *choice_.l1 != request.cache) return;
     for (std::uint32_t left = request.asked; left != 0; left &= left - 1) {
         const auto sector = static_cast<unsigned>(std::countr_zero(left));

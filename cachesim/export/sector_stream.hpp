@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,13 +27,15 @@ public:
     bool wants(std::size_t level, std::uint32_t sm) const override {
         return level == choice_.level && sm == choice_.sm;
     }
-    /// The sectors of a look-up in ascending order.
-    void served(std::size_t level, const ServedRequest&) override;
+    /// The sectors of each look-up in ascending order.
+    void served(std::size_t level, std::span<const ServedRequest>) override;
 
     /// Writes what is left. Call after Replay::finish().
     void flush();
 
 private:
+    void write(const ServedRequest&);
+
     Choice choice_;
     const SectorFormat& format_;
     std::uint32_t sector_bytes_;

@@ -12,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "cachesim/replay/hierarchy.hpp"
+#include "cachesim/replay/group_numbers.hpp"
+#include "cachesim/replay/sm_caches.hpp"
 #include "cachesim/replay/vectors.hpp"
 #include "traces/record.hpp"
 
@@ -20,11 +21,18 @@ namespace raycache::cachesim {
 
 using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
 
+/// A warp of a launch, and the batch that it is counted in.
+struct PushedWarp {
+    WarpPointer trace;
+    BatchGroups* groups = nullptr;
+};
+
 class Multiprocessor {
 public:
-    /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM.
-    Multiprocessor(unsigned number, unsigned cta_slots, const Gpu& gpu)
-        : number_(number),
+    /// Warp slot s (CTA slot * warps_per_cta + place in the CTA) reads through L1 s mod l1_per_sm of the SM, whose
+    /// caches must outlive this object.
+    Multiprocessor(unsigned cta_slots, const Gpu& gpu, SmCaches& memory)
+        : memory_(memory),
           warps_per_cta_(gpu.warps_per_cta),
           l1_per_sm_(gpu.l1_per_sm),
           simd_width_(gpu.simd_width),
@@ -34,21 +42,22 @@ public:
     bool idle() const { return active_.empty(); }
 
     /// Makes the warps resident, all before their first record; those without an access end here.
-    void place(unsigned cta_slot, std::span<const WarpPointer> warps, Hierarchy& memory) {
+    void place(unsigned cta_slot, std::span<const PushedWarp> warps, Workspace& work) {
         auto at = active_.begin();
         while (at != active_.end() && at->slot < cta_slot * warps_per_cta_) ++at;
         auto place = static_cast<std::size_t>(at - active_.begin());
         for (std::size_t i = 0; i < warps.size(); ++i) {
-            const traces::WarpTrace& trace = *warps[i];
+            const traces::WarpTrace& trace = *warps[i].trace;
             Warp warp;
             warp.slot = cta_slot * warps_per_cta_ + static_cast<unsigned>(i);
             warp.l1 = warp.slot % l1_per_sm_;
             warp.number = trace.warp;
+            warp.groups = warps[i].groups;
             warp.next = trace.records.data();
             warp.end = warp.next + trace.records.size();
             warp.elements = trace.elements.data();
-            if (!advance_to_access(warp, memory)) continue;
-            traces_[warp.slot] = warps[i];
+            if (!advance_to_access(warp, work)) continue;
+            traces_[warp.slot] = warps[i].trace;
             if (place < turn_ || (place == turn_ && warp.slot < resume_slot_)) ++turn_;
             active_.insert(active_.begin() + static_cast<std::ptrdiff_t>(place), warp);
             ++place;
@@ -67,10 +76,10 @@ public:
 
     /// Takes its turn in each round from `round` up to `end`, and counts `round` up. Stops after an access that frees a
     /// CTA slot, and returns that slot.
-    std::optional<unsigned> run(std::size_t& round, std::size_t end, Hierarchy& memory) {
+    std::optional<unsigned> run(std::size_t& round, std::size_t end, Workspace& work) {
         unsigned freed = none;
-        while (round < end && !active_.empty() && freed == none) freed = issue(round++, memory);
-        memory.end_sm(number_);
+        while (round < end && !active_.empty() && freed == none) freed = issue(round++, work);
+        memory_.end_run(work);
         ended_.clear();
         if (freed != none) return freed;
         round = end;
@@ -85,12 +94,13 @@ private:
         unsigned slot = 0;
         unsigned l1 = 0;
         std::uint32_t number = 0;  ///< of the warp in its launch
+        BatchGroups* groups = nullptr;
     };
 
     static constexpr unsigned none = ~0u;
 
     /// One warp access of the warp whose turn it is. Returns the CTA slot that it freed, or `none`.
-    unsigned issue(std::size_t round, Hierarchy& memory) {
+    [[gnu::always_inline]] unsigned issue(std::size_t round, Workspace& work) {
         if (turn_ >= active_.size()) turn_ = 0;
         Warp& warp = active_[turn_];
         // What the warp reads a few turns on.
@@ -101,10 +111,10 @@ private:
         record.mask = first_vector(warp.left, simd_width_);
         warp.left &= ~record.mask;
         if (!warp.left) ++warp.next;
-        memory.access(record, warp.elements, warp.number, warp.l1, round);
+        memory_.access(record, warp.elements, warp.number, warp.l1, round, *warp.groups, work);
         warp.elements += record.lanes();
         resume_slot_ = warp.slot + 1;
-        if (warp.left || advance_to_access(warp, memory)) {
+        if (warp.left || advance_to_access(warp, work)) {
             ++turn_;
             return none;
         }
@@ -115,18 +125,19 @@ private:
     }
 
     /// Counts ray starts up to the next access; false if there is none.
-    static bool advance_to_access(Warp& warp, Hierarchy& memory) {
+    static bool advance_to_access(Warp& warp, Workspace& work) {
         for (; warp.next != warp.end; ++warp.next) {
             if (warp.next->is_access()) {
                 warp.left = warp.next->mask;
                 return true;
             }
-            memory.add_rays(*warp.next);
+            work.tally.add_rays(*warp.next, *warp.groups);
         }
         return false;
     }
 
-    unsigned number_, warps_per_cta_, l1_per_sm_, simd_width_;
+    SmCaches& memory_;
+    unsigned warps_per_cta_, l1_per_sm_, simd_width_;
     std::vector<Warp> active_;          ///< unfinished warps by slot
     std::vector<WarpPointer> traces_;   ///< by slot: keeps the records of an unfinished warp
     std::vector<WarpPointer> ended_;    ///< warps whose elements are still to be read

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "cachesim/replay/hierarchy.hpp"
 #include "cachesim/replay/launch_checks.hpp"
@@ -20,7 +21,8 @@ struct Replay::Impl {
           sample_index(sample),
           sms(gpu.sms),
           memory(gpu, regions, instructions),
-          schedule(std::in_place, gpu, cta_slots, memory) {}
+          schedule(std::in_place, gpu, cta_slots, memory),
+          groups(&memory.group_numbers().begin_batch()) {}
 
     void place_cta();
     void run_all() {
@@ -35,17 +37,19 @@ struct Replay::Impl {
     const unsigned sms;
     Hierarchy memory;
     std::optional<Schedule> schedule;  ///< of this kernel
-    std::vector<WarpPointer> cta;      ///< warps of the CTA that is being pushed
+    std::vector<PushedWarp> cta;       ///< warps of the CTA that is being pushed
     std::uint64_t placed = 0;          ///< CTAs of this kernel placed so far
+    BatchGroups* groups;               ///< of the warps that are pushed
+    bool empty_batch = true;           ///< the last batch has no warp as yet
 };
 
 /// Gives the collected CTA a place: rotating while there is room, then wherever a slot frees first.
 void Replay::Impl::place_cta() {
     const bool has_access =
-        std::any_of(cta.begin(), cta.end(), [](const WarpPointer& w) { return !w->elements.empty(); });
+        std::any_of(cta.begin(), cta.end(), [](const PushedWarp& w) { return !w.trace->elements.empty(); });
     if (!has_access) {  // takes no slot and no turn; its rays count
-        for (const WarpPointer& warp : cta)
-            for (const traces::Record& record : warp->records) memory.add_rays(record);
+        for (const PushedWarp& warp : cta)
+            for (const traces::Record& record : warp.trace->records) memory.add_rays(record, *warp.groups);
     } else if (placed < std::uint64_t{cta_slots} * sms) {
         schedule->place(placed % sms, static_cast<unsigned>(placed / sms), cta);
         ++placed;
@@ -67,7 +71,8 @@ void Replay::observe(RequestSink& sink) { impl_->memory.observe(sink); }
 
 void Replay::push(std::shared_ptr<const traces::WarpTrace> warp) {
     check(*warp, impl_->regions);
-    impl_->cta.push_back(std::move(warp));
+    impl_->cta.push_back({std::move(warp), impl_->groups});
+    if (impl_->groups->batch() != not_counted) impl_->empty_batch = false;
     if (impl_->cta.size() == impl_->warps_per_cta) impl_->place_cta();
 }
 
@@ -78,9 +83,27 @@ void Replay::end_kernel() {
     impl_->placed = 0;
 }
 
+void Replay::count_from_here() {
+    GroupNumbers& numbers = impl_->memory.group_numbers();
+    if (!std::exchange(impl_->empty_batch, true)) numbers.begin_batch();
+    impl_->groups = &numbers.last_batch();
+}
+
+void Replay::count_until_here() { impl_->groups = &impl_->memory.group_numbers().uncounted(); }
+
 LaunchStatistics Replay::finish() {
     impl_->run_all();
-    return {impl_->sample_index, impl_->memory.groups()};
+    std::vector<const BatchGroups*> all;
+    for (const BatchGroups& batch : impl_->memory.group_numbers().batches()) all.push_back(&batch);
+    return {impl_->sample_index, impl_->memory.groups(all)};
+}
+
+std::vector<LaunchStatistics> Replay::batches() const {
+    std::vector<LaunchStatistics> each;
+    const auto& batches = impl_->memory.group_numbers().batches();
+    const std::size_t count = batches.size() - (impl_->empty_batch ? 1 : 0);
+    for (std::size_t b = 0; b < count; ++b) each.push_back({impl_->sample_index, impl_->memory.groups({&batches[b]})});
+    return each;
 }
 
 }  // namespace raycache::cachesim

@@ -1,5 +1,9 @@
 // Functional replay of one launch on one GPU: which sectors hit where. Order only, no time.
 //
+// Statistics are kept for batches: the warps from a call of count_from_here() to one of count_until_here(), whenever
+// they run. Warps outside batches warm the caches and are not counted. All warps are one batch unless the caller says
+// otherwise.
+//
 // A CTA is Gpu::warps_per_cta consecutive warps of the launch (the last may be shorter). An SM has room for
 // floor(warps_per_sm / warps_per_cta) CTAs, at least 1. CTA c starts on SM c mod n while there is room (each SM takes
 // one, then the next SM); a later CTA goes to whichever SM frees a slot first. SMs take turns in order of their number,
@@ -41,8 +45,8 @@ public:
     ~Replay();
     Replay(Replay&&) noexcept;
 
-    /// The sink hears of the caches that it wants. Call before the first push; the sink must outlive the replay. Costs
-    /// nothing where no sink listens, and changes no count where one does.
+    /// The sink, beside others, hears of the caches that it wants. Call before the first push; it must outlive the
+    /// replay. Costs nothing where no sink listens, and changes no count where one does.
     void observe(RequestSink&);
 
     /// Hands over the next warp of the launch, in warp order. Simulates as far as needed to make room for it, so memory
@@ -54,8 +58,17 @@ public:
     /// below them kept (of a CPU, with three levels, all is kept).
     void end_kernel();
 
-    /// Runs what is left and returns the counts. Call once.
+    /// The warps pushed from now on are a batch, the next one. A batch of no warp is none. Caches and SMs stay as they
+    /// are: nothing is drained.
+    void count_from_here();
+    /// The warps pushed from now on are not counted, until the next count_from_here().
+    void count_until_here();
+
+    /// Runs what is left and returns the counts of all batches together. Call once.
     LaunchStatistics finish();
+
+    /// The counts of each batch. Complete after finish(): before, of what has run in windows that have ended.
+    std::vector<LaunchStatistics> batches() const;
 
 private:
     struct Impl;

@@ -33,11 +33,13 @@ class Schedule {
 public:
     Schedule(const Gpu& gpu, unsigned cta_slots, Hierarchy& memory)
         : memory_(memory), reached_(gpu.sms), waits_(gpu.sms) {
-        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(sm, cta_slots, gpu);
+        for (unsigned sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(cta_slots, gpu, memory.sm(sm));
     }
 
     /// Makes a CTA resident before its SM runs on, at first before any does.
-    void place(std::size_t sm, unsigned slot, std::span<const WarpPointer> cta) { sms_[sm].place(slot, cta, memory_); }
+    void place(std::size_t sm, unsigned slot, std::span<const PushedWarp> cta) {
+        sms_[sm].place(slot, cta, memory_.workspace());
+    }
 
     /// The slot that becomes free first. Its SM waits until resume(). Nothing if no warp is left.
     std::optional<FreeSlot> next_free() {
@@ -67,7 +69,7 @@ private:
         for (std::size_t sm = first; sm < sms_.size() && limit > before; ++sm) {
             if (sm + 1 < sms_.size()) sms_[sm + 1].prefetch();
             if (!waits_[sm]) {
-                if (const auto slot = sms_[sm].run(reached_[sm], limit, memory_)) {
+                if (const auto slot = sms_[sm].run(reached_[sm], limit, memory_.workspace())) {
                     waiting_.push({reached_[sm] - 1, sm, *slot});
                     waits_[sm] = true;
                 }

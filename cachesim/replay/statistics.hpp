@@ -54,7 +54,8 @@ struct RayGroup {
     bool operator==(const RayGroup&) const = default;
 };
 
-/// One launch on one GPU. Caches are empty when it begins.
+/// One batch of warps of a launch on one GPU: all of them, unless a replay is told otherwise (replay.hpp). Caches are
+/// empty when the launch begins.
 struct LaunchStatistics {
     std::uint32_t sample = 0;      ///< first sample index of the launch
     std::vector<RayGroup> groups;  ///< by ray type, then bounce; only those that occur

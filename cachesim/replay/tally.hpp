@@ -1,4 +1,4 @@
-// Whom a warp access is charged to, and the sums: one group of counters per (ray type, bounce, region) that occurs.
+// Sums, one for each group of GroupNumbers. Whole numbers: whoever adds them up, in whichever order, gets the same.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cachesim/frontend/load_counter.hpp"
+#include "cachesim/replay/group_numbers.hpp"
 #include "cachesim/replay/statistics.hpp"
 #include "traces/header.hpp"
 #include "traces/record.hpp"
@@ -16,23 +17,21 @@ namespace raycache::cachesim {
 
 class Tally {
 public:
-    explicit Tally(const std::vector<traces::Region>& regions) {
-        for (const traces::Region& r : regions) kinds_.push_back(r.kind);
-        first_group_.fill(absent);
+    /// `per_ray`: GroupNumbers::per_ray().
+    explicit Tally(std::size_t per_ray) : per_ray_(per_ray) {}
+
+    /// Groups below this number can be added to from now on: GroupNumbers::size(), after whose groups were asked for.
+    void make_room(std::size_t groups) {
+        if (groups > sums_.size()) [[unlikely]]
+            sums_.resize(groups);
     }
 
-    /// The group of a record, an access. Its ray type and its region must be known.
-    std::uint32_t group(const traces::Record& record) { return first_group(record) + record.region; }
-
-    /// The ray type and the bounce of a group.
-    struct RayOf {
-        traces::RayType ray{};
-        std::uint8_t bounce = 0;
-    };
-    RayOf ray_of(std::uint32_t group) const { return rays_[group / (kinds_.size() + 1)]; }
-
-    /// A ray-start record.
-    void add_rays(const traces::Record& record) { sums_[first_group(record) + kinds_.size()].rays += record.lanes(); }
+    /// A ray-start record, whose group there need be no room for.
+    void add_rays(const traces::Record& record, BatchGroups& groups) {
+        const std::size_t group = groups.first(record) + per_ray_ - 1;
+        make_room(group + 1);
+        sums_[group].rays += record.lanes();
+    }
 
     /// A warp access of `lanes` lanes and distinct sectors.
     void add_access(std::uint32_t group, unsigned lanes, unsigned sectors) {
@@ -64,8 +63,13 @@ public:
         sums_[group].unasked[level] += static_cast<unsigned>(std::popcount(sectors));
     }
 
-    /// The groups in order of ray type and bounce. `levels`: how many there are above DRAM.
-    std::vector<RayGroup> groups(std::size_t levels, const LoadCounter&) const;
+    Tally& operator+=(const Tally&);
+
+    /// The groups of these batches together, in order of ray type and bounce. `kinds`: by region; `levels`: how many
+    /// there are above DRAM.
+    std::vector<RayGroup> groups(const std::vector<const BatchGroups*>& batches,
+                                 const std::vector<traces::ObjectKind>& kinds, std::size_t levels,
+                                 const LoadCounter&) const;
 
 private:
     static constexpr std::size_t most_levels = 3;
@@ -73,26 +77,14 @@ private:
     struct Sums {
         std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, requests = 0, sectors = 0, first = 0;
         std::array<std::uint64_t, most_levels> fetched{}, unasked{};  ///< sectors, by level
+
+        Sums& operator+=(const Sums&);
     };
-    Counters counters(const Sums&, std::size_t region, std::size_t levels, const LoadCounter&) const;
+    static Counters counters(const Sums&, traces::ObjectKind, std::size_t region, std::size_t levels,
+                             const LoadCounter&);
 
-    /// Of the record's ray type and bounce: one group for each region, and one for their rays.
-    std::uint32_t first_group(const traces::Record& record) {
-        std::uint32_t& first =
-            first_group_[static_cast<unsigned>(record.ray) * (traces::max_bounce + 1) + record.bounce];
-        if (first == absent) [[unlikely]] {
-            first = static_cast<std::uint32_t>(sums_.size());
-            sums_.resize(sums_.size() + kinds_.size() + 1);
-            rays_.push_back({record.ray, record.bounce});
-        }
-        return first;
-    }
-
-    static constexpr std::uint32_t absent = ~std::uint32_t{0};
-    std::vector<traces::ObjectKind> kinds_;  ///< by region
-    std::array<std::uint32_t, traces::ray_types*(traces::max_bounce + 1)> first_group_{};
-    std::vector<Sums> sums_;
-    std::vector<RayOf> rays_;  ///< of each kinds_.size() + 1 of them
+    std::size_t per_ray_;
+    std::vector<Sums> sums_;  ///< by group
 };
 
 }  // namespace raycache::cachesim

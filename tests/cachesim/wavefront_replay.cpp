@@ -208,9 +208,7 @@ TEST_CASE("in time, a kernel waits for the one before, and streamed bytes take t
 TEST_CASE("requests of a wavefront cannot be followed") {
     struct Sink final : RequestSink {
         bool wants(std::size_t, unsigned) const override { return true; }
-        void issued(const IssuedAccess&) override {}
-        void served(std::size_t, const ServedRequest&) override {}
-        void end_window() override {}
+        void served(std::size_t, std::span<const ServedRequest>) override {}
     } sink;
     Replay replay(tiny_gpu(), buffers, 0);
     CHECK_THROWS_WITH(replay.observe(sink), Catch::Matchers::Contains("trace of a wavefront"));

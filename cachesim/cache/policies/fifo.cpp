@@ -4,7 +4,7 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/,
+std::unique_ptr<Level> make_fifo(const CacheGeometry& geometry, CacheRange caches, std::uint64_t /*lines*/,
                                  InstructionSet) {
     return make_in_place<FifoOrder>(geometry, caches);
 }

@@ -30,7 +30,7 @@ private:
     std::vector<std::uint32_t> oldest_;  ///< by set: the way whose line came first
 };
 
-std::unique_ptr<Level> make_fifo(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<Level> make_fifo(const CacheGeometry&, CacheRange caches, std::uint64_t lines, InstructionSet);
 std::unique_ptr<VictimOrder> order_fifo(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

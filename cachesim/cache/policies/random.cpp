@@ -4,9 +4,9 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_random(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/,
+std::unique_ptr<Level> make_random(const CacheGeometry& geometry, CacheRange caches, std::uint64_t /*lines*/,
                                    InstructionSet) {
-    return make_in_place<RandomOrder>(geometry, caches, geometry.seed);
+    return make_in_place<RandomOrder>(geometry, caches, geometry.seed, geometry.slices * geometry.sets * caches.first);
 }
 
 std::unique_ptr<VictimOrder> order_random(const CacheGeometry& geometry, unsigned cache) {

@@ -43,7 +43,7 @@ private:
     std::vector<std::uint64_t> evictions_;  ///< by set, so far
 };
 
-std::unique_ptr<Level> make_random(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<Level> make_random(const CacheGeometry&, CacheRange caches, std::uint64_t lines, InstructionSet);
 std::unique_ptr<VictimOrder> order_random(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

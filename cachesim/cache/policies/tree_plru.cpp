@@ -4,7 +4,7 @@
 
 namespace raycache::cachesim {
 
-std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, unsigned caches, std::uint64_t /*lines*/,
+std::unique_ptr<Level> make_tree_plru(const CacheGeometry& geometry, CacheRange caches, std::uint64_t /*lines*/,
                                       InstructionSet) {
     return make_in_place<TreePlruOrder>(geometry, caches);
 }

@@ -57,7 +57,7 @@ private:
     std::vector<bool> right_;  ///< of each inner node of each set: evict from the right half
 };
 
-std::unique_ptr<Level> make_tree_plru(const CacheGeometry&, unsigned caches, std::uint64_t lines, InstructionSet);
+std::unique_ptr<Level> make_tree_plru(const CacheGeometry&, CacheRange caches, std::uint64_t lines, InstructionSet);
 std::unique_ptr<VictimOrder> order_tree_plru(const CacheGeometry&, unsigned cache);
 
 }  // namespace raycache::cachesim

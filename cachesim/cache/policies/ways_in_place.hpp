@@ -70,7 +70,7 @@ private:
 
 /// A level whose sets are WaysInPlace; `more` goes to Order.
 template <class Order, class... More>
-std::unique_ptr<Level> make_in_place(const CacheGeometry& geometry, unsigned caches, More... more) {
+std::unique_ptr<Level> make_in_place(const CacheGeometry& geometry, CacheRange caches, More... more) {
     return std::make_unique<LevelWith<WaysInPlace<Order>>>(geometry, caches, more...);
 }
 
