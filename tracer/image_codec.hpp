@@ -41,4 +41,7 @@ public:
 /// Loads the module at the first call. Throws Error where it cannot.
 const ImageCodec& image_codec();
 
+/// A function of the module, likewise: what stands behind drawing.hpp is asked for so.
+void* image_module_symbol(const char* name);
+
 }  // namespace raycache::tracer

@@ -5,18 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 
-#include "tools/jobs/canvas.hpp"
 #include "tools/jobs/colour_scale.hpp"
-#include "tools/jobs/pixel_font.hpp"
 
 namespace raycache::tools {
 
 namespace {
 
-constexpr unsigned margin = 16, bar_height = ScaleBar::height, text_scale = ScaleBar::text_scale, line = ScaleBar::line;
+constexpr int margin = 16;
 constexpr unsigned smallest_panel = 384, largest_panel = 640;  ///< pixels of a panel's longer side, about
 constexpr std::uint32_t block = 8;  ///< pixels on a side of the squares over which differences are averaged
 
@@ -96,7 +93,7 @@ Scale common_scale(const Quantity& quantity, const Grid& base, const Grid& other
         high = std::min(quantity.highest, std::ceil(high / 2) * 2);
     }
     if (!(high > low)) high = low + 1;
-    return with_cuts({low, high, viridis, false, false}, both);
+    return with_cuts({low, high, viridis(), false, false}, both);
 }
 
 /// How many pixels of the picture a pixel of the map takes, or the other way round.
@@ -111,74 +108,82 @@ struct Zoom {
     unsigned enlarge, reduce, panel_width, panel_height;
 };
 
-void draw_panel(Canvas& canvas, unsigned x, unsigned y, const Grid& grid, const Scale& scale, const Zoom& zoom) {
-    for (unsigned row = 0; row * zoom.enlarge < zoom.panel_height; ++row)
-        for (unsigned column = 0; column * zoom.enlarge < zoom.panel_width; ++column) {
-            const double value = grid.mean(column * zoom.reduce, row * zoom.reduce, zoom.reduce, zoom.reduce);
-            canvas.fill(x + column * zoom.enlarge, y + row * zoom.enlarge, zoom.enlarge, zoom.enlarge,
-                        std::isnan(value) ? no_value : scale.colour((value - scale.low) / (scale.high - scale.low)));
+void draw_panel(tracer::Drawing& drawing, int x, int y, const Grid& grid, const Scale& scale, const Zoom& zoom) {
+    std::vector<float> shares(std::size_t{zoom.panel_width} * zoom.panel_height);
+    for (unsigned row = 0; row < zoom.panel_height; ++row)
+        for (unsigned column = 0; column < zoom.panel_width; ++column) {
+            float& share = shares[std::size_t{row} * zoom.panel_width + column];
+            if (row % zoom.enlarge != 0)
+                share = shares[std::size_t{row - 1} * zoom.panel_width + column];
+            else if (column % zoom.enlarge != 0)
+                share = shares[std::size_t{row} * zoom.panel_width + column - 1];
+            else
+                share = scale.share(grid.mean(column / zoom.enlarge * zoom.reduce, row / zoom.enlarge * zoom.reduce,
+                                              zoom.reduce, zoom.reduce));
         }
-    canvas.outline(x, y, zoom.panel_width, zoom.panel_height, {0, 0, 0});
+    const auto width = static_cast<int>(zoom.panel_width), height = static_cast<int>(zoom.panel_height);
+    drawing.map(x, y, width, shares, scale.colours);
+    drawing.frame(x, y, width, height, {0, 0, 0});
 }
 
 }  // namespace
 
 tracer::ScreenImage draw(const std::string& title, const HeatMap& base, const HeatMap& other) {
     const Zoom zoom(base.width, base.height);
-    const unsigned panel = std::max(zoom.panel_width, 400u);  // wide enough for its unit
-    const unsigned text_width = 3 * (panel + margin) - margin;
-    const auto broken = [&](const std::string& text) { return Canvas::lines(text, text_scale, text_width); };
+    const auto panel_width = static_cast<int>(zoom.panel_width), panel_height = static_cast<int>(zoom.panel_height);
+    const int panel = std::max(panel_width, 400);  // wide enough for its unit
+    const int all_width = 3 * (panel + margin) - margin;
     const auto height = [](const std::vector<std::string>& lines) {
-        return static_cast<unsigned>(lines.size()) * line;
+        return static_cast<int>(lines.size()) * label_line;
     };
 
-    const auto title_lines = broken(title);
+    const auto title_lines = label_lines(title, all_width);
     const std::array row_titles{
-        broken(base.name), broken(other.name),
-        broken(fmt::format("{} minus {}, mean of {} x {} pixels", other.name, base.name, block, block))};
-    const auto footer = broken(
+        label_lines(base.name, all_width), label_lines(other.name, all_width),
+        label_lines(fmt::format("{} minus {}, mean of {} x {} pixels", other.name, base.name, block, block),
+                    all_width)};
+    const auto footer = label_lines(
         "Scales end at about the 1st and 99th percentile of what they show; DRAM bytes begin at 0. <= and >=: values "
-        "beyond have the colour of the end. Grey: nothing read.");
+        "beyond have the colour of the end. Grey: nothing read.",
+        all_width);
 
-    const unsigned bar = bar_height + 3 * line + margin, heading = 3 * glyph_height + margin;
-    const unsigned top = margin + height(title_lines) + heading + 4;
-    std::array<unsigned, 3> row_top{top, 0, 0}, panel_top{};
-    for (unsigned row = 0; row < 3; ++row) {
+    const int bar = scale_bar_height + 3 * label_line + margin, heading = heading_size + margin;
+    const int top = margin + height(title_lines) + heading + 4;
+    std::array<int, 3> row_top{top, 0, 0}, panel_top{};
+    for (std::size_t row = 0; row < 3; ++row) {
         panel_top[row] = row_top[row] + height(row_titles[row]);
-        if (row < 2) row_top[row + 1] = panel_top[row] + zoom.panel_height + margin + (row == 1 ? bar : 0);
+        if (row < 2) row_top[row + 1] = panel_top[row] + panel_height + margin + (row == 1 ? bar : 0);
     }
-    const unsigned bottom = panel_top[2] + zoom.panel_height + margin + bar;
-    Canvas canvas(2 * margin + text_width, bottom + height(footer) + margin);
-    const auto write = [&](unsigned y, const std::vector<std::string>& lines) {
-        for (std::size_t i = 0; i < lines.size(); ++i)
-            canvas.text(margin, y + static_cast<unsigned>(i) * line, lines[i], text_scale);
+    const int bottom = panel_top[2] + panel_height + margin + bar;
+    const auto drawing = tracer::make_drawing(2 * margin + all_width, bottom + height(footer) + margin);
+    const auto write = [&](int y, const std::vector<std::string>& lines) {
+        for (const std::string& line : lines) {
+            drawing->text(margin, y, line, label_size);
+            y += label_line;
+        }
     };
     write(margin, title_lines);
-    for (unsigned row = 0; row < 3; ++row) write(row_top[row], row_titles[row]);
+    for (std::size_t row = 0; row < 3; ++row) write(row_top[row], row_titles[row]);
     write(bottom, footer);
 
-    const auto quantities = quantities_of(base.lanes);
-    for (unsigned column = 0; column < quantities.size(); ++column) {
-        const Quantity& quantity = quantities[column];
-        const unsigned x = margin + column * (panel + margin);
+    int x = margin;
+    for (const Quantity& quantity : quantities_of(base.lanes)) {
         const Grid grid = grid_of(base, quantity), other_grid = grid_of(other, quantity);
         const Grid change = difference(grid, other_grid);
         const Scale scale = common_scale(quantity, grid, other_grid),
                     change_scale = with_cuts(symmetric_scale(change.values), change.values);
-        canvas.text(x, margin + height(title_lines) + 8, quantity.title, 3);
-        const auto draw_bar = [&](unsigned row, const Scale& of_row, const std::string& unit) {
-            ScaleBar::draw(canvas, x, panel_top[row] + zoom.panel_height + margin - 4, zoom.panel_width, of_row, unit);
-        };
-        draw_panel(canvas, x, panel_top[0], grid, scale, zoom);
-        draw_panel(canvas, x, panel_top[1], other_grid, scale, zoom);
-        draw_bar(1, scale, quantity.unit);
-        draw_panel(canvas, x, panel_top[2], change, change_scale, zoom);
-        draw_bar(2, change_scale, quantity.difference);
-        canvas.text(
-            x + (zoom.panel_width - std::min(zoom.panel_width, Canvas::text_width(quantity.better, text_scale))) / 2,
-            panel_top[2] + zoom.panel_height + margin + bar_height + 2 * line, quantity.better, text_scale);
+        drawing->text(x, margin + height(title_lines) + 8, quantity.title, heading_size);
+        const auto bar_top = [&](std::size_t row) { return panel_top[row] + panel_height + margin - 4; };
+        draw_panel(*drawing, x, panel_top[0], grid, scale, zoom);
+        draw_panel(*drawing, x, panel_top[1], other_grid, scale, zoom);
+        draw_scale_bar(*drawing, x, bar_top(1), panel_width, scale, quantity.unit);
+        draw_panel(*drawing, x, panel_top[2], change, change_scale, zoom);
+        draw_scale_bar(*drawing, x, bar_top(2), panel_width, change_scale, quantity.difference);
+        drawing->text(x + panel_width / 2, bar_top(2) + scale_bar_height + 4 + 2 * label_line, quantity.better,
+                      label_size, tracer::TextAlign::centre);
+        x += panel + margin;
     }
-    return canvas.image();
+    return drawing->image();
 }
 
 }  // namespace raycache::tools

@@ -3,8 +3,9 @@
 //   const AnyJob job = parse_job(R"({"job": "replay", "launches": {"traces": ["mj.rct"]}, "gpu": {"names":
 //   ["h100"]}})", "cell 7"); Observer silent; const std::string text = result_text(run(job, silent));
 //
-// The text of a job has every key, so that equal texts are equal jobs. A result does not depend on the number of threads
-// and holds no time of day: equal jobs of equal files, equal texts (but for where the reference of quality is kept).
+// The text of a job has every key, so that equal texts are equal jobs. A result does not depend on the number of
+// threads and holds no time of day: equal jobs of equal files, equal texts (but for where the reference of quality is
+// kept).
 #pragma once
 
 #include <string>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "tools/jobs/canvas.hpp"
 #include "tools/jobs/colour_scale.hpp"
 #include "tools/jobs/exposure.hpp"
 #include "tracer/tone_map.hpp"
@@ -16,9 +15,9 @@
 namespace raycache::tools {
 namespace {
 
-using tracer::Image;
+using tracer::Drawing, tracer::Image;
 
-constexpr unsigned margin = 16, panel = 288, line = ScaleBar::line, text_scale = ScaleBar::text_scale;
+constexpr int margin = 16, panel = 288, line = label_line;
 constexpr std::uint32_t usual_crop = 96;
 
 /// Luminance of picture minus reference.
@@ -59,30 +58,54 @@ Crop worst_crop(const QualityReport& report) {
     return best;
 }
 
-/// Fills a panel with `colour(x, y)` of a part of a picture, enlarged by a whole number or reduced to every n-th pixel.
+/// A part of a picture that fills a panel's longer side, enlarged or reduced to the nearest pixels.
+struct Part {
+    Part(std::uint32_t width, std::uint32_t height)
+        : side(std::max(width, height)), columns(fill(width)), rows(fill(height)) {}
+    /// at(x, y) of every pixel shown, row by row.
+    template <class At>
+    auto pixels(const At& at) const {
+        std::vector<decltype(at(0U, 0U))> shown;
+        for (std::uint32_t row = 0; row < rows; ++row)
+            for (std::uint32_t column = 0; column < columns; ++column)
+                shown.push_back(at(column * side / panel, row * side / panel));
+        return shown;
+    }
+    /// Pixels of the panel that this length takes.
+    std::uint32_t fill(std::uint32_t length) const { return (length * panel + side - 1) / side; }
+    void frame(Drawing& drawing, int x, int y) const {
+        drawing.frame(x, y, static_cast<int>(columns), static_cast<int>(rows), {0, 0, 0});
+    }
+    std::uint32_t side, columns, rows;
+};
+
+/// `colour(x, y)`: of the picture.
 template <class ColourAt>
-void draw_part(Canvas& canvas, unsigned x, unsigned y, std::uint32_t width, std::uint32_t height,
-               const ColourAt& colour) {
-    const std::uint32_t side = std::max(width, height);
-    for (unsigned row = 0; row < panel; ++row)
-        for (unsigned column = 0; column < panel; ++column) {
-            const std::uint32_t px = column * side / panel, py = row * side / panel;
-            if (px < width && py < height) canvas.fill(x + column, y + row, 1, 1, colour(px, py));
-        }
-    canvas.outline(x, y, std::max(1U, width * panel / side), std::max(1U, height * panel / side), {0, 0, 0});
+void draw_colours(Drawing& drawing, int x, int y, const Part& part, const ColourAt& colour) {
+    drawing.paste(x, y, {part.columns, part.rows, part.pixels(colour)});
+    part.frame(drawing, x, y);
 }
 
-void draw_crop(Canvas& canvas, unsigned x, unsigned y, const Image& image, const Crop& crop, float exposure) {
-    draw_part(canvas, x, y, crop.side, crop.side, [&](std::uint32_t px, std::uint32_t py) {
+/// `value(x, y)`: a number of the picture.
+template <class ValueAt>
+void draw_values(Drawing& drawing, int x, int y, const Part& part, const Scale& scale, const ValueAt& value) {
+    const auto shares =
+        part.pixels([&](std::uint32_t px, std::uint32_t py) { return scale.share(double{value(px, py)}); });
+    drawing.map(x, y, static_cast<int>(part.columns), shares, scale.colours);
+    part.frame(drawing, x, y);
+}
+
+void draw_crop(Drawing& drawing, int x, int y, const Image& image, const Crop& crop, float exposure) {
+    draw_colours(drawing, x, y, {crop.side, crop.side}, [&](std::uint32_t px, std::uint32_t py) {
         return tracer::tone_map(image.pixels[std::size_t{crop.y + py} * image.width + crop.x + px], exposure);
     });
 }
 
-void draw_error(Canvas& canvas, unsigned x, unsigned y, const Image& image, const Image& reference, const Crop& crop,
+void draw_error(Drawing& drawing, int x, int y, const Image& image, const Image& reference, const Crop& crop,
                 const Scale& scale) {
     const auto error = luminance_error(image, reference);
-    draw_part(canvas, x, y, crop.side, crop.side, [&](std::uint32_t px, std::uint32_t py) {
-        return scale.of(error[std::size_t{crop.y + py} * image.width + crop.x + px]);
+    draw_values(drawing, x, y, {crop.side, crop.side}, scale, [&](std::uint32_t px, std::uint32_t py) {
+        return error[std::size_t{crop.y + py} * image.width + crop.x + px];
     });
 }
 
@@ -106,71 +129,75 @@ tracer::ScreenImage draw_index(const QualityReport& report, const QualityPicture
                                const Scale& pixels, const Scale& blocks, float exposure) {
     const Image& reference = pictures.reference;
     const bool equal_time = report.rows.front().equal_time.has_value();
-    const unsigned columns = equal_time ? 5 : 3, row_height = line + panel + margin;
-    const unsigned top = margin + 4 * line + 8;
-    const unsigned rows = static_cast<unsigned>(report.rows.size()) + 1;
-    Canvas canvas(margin + columns * (panel + margin), top + rows * row_height + line + margin);
-    const auto column = [](unsigned c) { return margin + c * (panel + margin); };
-    canvas.text(margin, margin,
-                fmt::format("{}, {} x {} pixels, reference of {} samples per pixel", report.scene, report.width,
-                            report.height, report.reference_spp),
-                text_scale);
-    canvas.text(margin, margin + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", text_scale);
-    canvas.text(margin, margin + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", text_scale);
+    const int columns = equal_time ? 5 : 3, row_height = line + panel + margin;
+    const int top = margin + 4 * line + 8;
+    const int rows = static_cast<int>(report.rows.size()) + 1;
+    const auto owned =
+        tracer::make_drawing(margin + columns * (panel + margin), top + rows * row_height + line + margin);
+    Drawing& drawing = *owned;
+    const auto column = [](int c) { return margin + c * (panel + margin); };
+    drawing.text(margin, margin,
+                 fmt::format("{}, {} x {} pixels, reference of {} samples per pixel", report.scene, report.width,
+                             report.height, report.reference_spp),
+                 label_size);
+    drawing.text(margin, margin + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", label_size);
+    drawing.text(margin, margin + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", label_size);
     if (equal_time)
-        canvas.text(margin, margin + 3 * line,
-                    fmt::format("Equal time: as many samples as {} predicts to fit into the time of {}.", report.gpu,
-                                report.baseline.empty() ? "each" : report.baseline),
-                    text_scale);
+        drawing.text(margin, margin + 3 * line,
+                     fmt::format("Equal time: as many samples as {} predicts to fit into the time of {}.", report.gpu,
+                                 report.baseline.empty() ? "each" : report.baseline),
+                     label_size);
 
     // First row: what is shown, and the scales.
-    canvas.text(column(0), top, "reference, crop", text_scale);
-    draw_crop(canvas, column(0), top + line, reference, crop, exposure);
-    canvas.text(column(1), top, "reference, whole", text_scale);
-    draw_part(canvas, column(1), top + line, reference.width, reference.height, [&](std::uint32_t x, std::uint32_t y) {
-        return tracer::tone_map(reference.pixels[std::size_t{y} * reference.width + x], exposure);
-    });
-    const std::uint32_t side = std::max(reference.width, reference.height);
-    for (const unsigned inset : {0U, 1U})
-        canvas.outline(column(1) + crop.x * panel / side + inset, top + line + crop.y * panel / side + inset,
-                       crop.side * panel / side - 2 * inset, crop.side * panel / side - 2 * inset, {230, 60, 0});
-    canvas.text(column(2), top, "error, red: too bright", text_scale);
-    ScaleBar::draw(canvas, column(2), top + 2 * line, panel, pixels, "pixel, luminance");
-    ScaleBar::draw(canvas, column(2), top + 6 * line, panel, blocks, "mean of 8 x 8");
+    drawing.text(column(0), top, "reference, crop", label_size);
+    draw_crop(drawing, column(0), top + line, reference, crop, exposure);
+    drawing.text(column(1), top, "reference, whole", label_size);
+    draw_colours(drawing, column(1), top + line, {reference.width, reference.height},
+                 [&](std::uint32_t x, std::uint32_t y) {
+                     return tracer::tone_map(reference.pixels[std::size_t{y} * reference.width + x], exposure);
+                 });
+    const std::uint32_t whole = std::max(reference.width, reference.height);
+    const auto shown = [&](std::uint32_t length) { return static_cast<int>(length * panel / whole); };
+    for (const int inset : {0, 1})
+        drawing.frame(column(1) + shown(crop.x) + inset, top + line + shown(crop.y) + inset,
+                      shown(crop.side) - 2 * inset, shown(crop.side) - 2 * inset, {230, 60, 0});
+    drawing.text(column(2), top, "error, red: too bright", label_size);
+    draw_scale_bar(drawing, column(2), top + 2 * line, panel, pixels, "pixel, luminance");
+    draw_scale_bar(drawing, column(2), top + 6 * line, panel, blocks, "mean of 8 x 8");
 
-    for (unsigned r = 0; r < report.rows.size(); ++r) {
+    for (std::size_t r = 0; r < report.rows.size(); ++r) {
         const QualityRow& row = report.rows[r];
-        const unsigned y = top + (r + 1) * row_height;
-        canvas.text(column(0), y,
-                    fmt::format("{}, N {}, RMSE {}, R8 {}, z {}{}", label(row, report.rows), row.spp(),
-                                short_text(row.errors.rmse, 3, true), short_text(row.errors.r8, 1),
-                                number_text(row.errors.z_pixels, 1), speed_text(row)),
-                    text_scale);
-        draw_crop(canvas, column(0), y + line, pictures.rows[r], crop, exposure);
-        draw_error(canvas, column(1), y + line, pictures.rows[r], reference, crop, pixels);
+        const int y = top + static_cast<int>(r + 1) * row_height;
+        drawing.text(column(0), y,
+                     fmt::format("{}, N {}, RMSE {}, R8 {}, z {}{}", label(row, report.rows), row.spp(),
+                                 short_text(row.errors.rmse, 3, true), short_text(row.errors.r8, 1),
+                                 number_text(row.errors.z_pixels, 1), speed_text(row)),
+                     label_size);
+        draw_crop(drawing, column(0), y + line, pictures.rows[r], crop, exposure);
+        draw_error(drawing, column(1), y + line, pictures.rows[r], reference, crop, pixels);
         const auto& means = row.errors.sums.blocks;
         if (means.columns > 0 && means.rows > 0)
-            draw_part(canvas, column(2), y + line, means.columns, means.rows, [&](std::uint32_t bx, std::uint32_t by) {
-                return blocks.of(means.mean[std::size_t{by} * means.columns + bx]);
-            });
+            draw_values(
+                drawing, column(2), y + line, {means.columns, means.rows}, blocks,
+                [&](std::uint32_t bx, std::uint32_t by) { return means.mean[std::size_t{by} * means.columns + bx]; });
         if (!equal_time) continue;
         const QualityRow::EqualTime& same = *row.equal_time;
-        canvas.text(column(3), y,
-                    fmt::format("equal time: N {}, RMSE {}, R8 {}", same.spp, short_text(same.errors.rmse, 3, true),
-                                short_text(same.errors.r8, 1)),
-                    text_scale);
-        draw_crop(canvas, column(3), y + line, pictures.at_equal_time[r], crop, exposure);
-        draw_error(canvas, column(4), y + line, pictures.at_equal_time[r], reference, crop, pixels);
+        drawing.text(column(3), y,
+                     fmt::format("equal time: N {}, RMSE {}, R8 {}", same.spp, short_text(same.errors.rmse, 3, true),
+                                 short_text(same.errors.r8, 1)),
+                     label_size);
+        draw_crop(drawing, column(3), y + line, pictures.at_equal_time[r], crop, exposure);
+        draw_error(drawing, column(4), y + line, pictures.at_equal_time[r], reference, crop, pixels);
     }
-    const unsigned bottom = top + rows * row_height;
-    canvas.text(column(0), bottom, "picture, crop", text_scale);
-    canvas.text(column(1), bottom, "error, crop", text_scale);
-    canvas.text(column(2), bottom, "error, whole, 8x8", text_scale);
+    const int bottom = top + rows * row_height;
+    drawing.text(column(0), bottom, "picture, crop", label_size);
+    drawing.text(column(1), bottom, "error, crop", label_size);
+    drawing.text(column(2), bottom, "error, whole, 8x8", label_size);
     if (equal_time) {
-        canvas.text(column(3), bottom, "equal time, crop", text_scale);
-        canvas.text(column(4), bottom, "its error", text_scale);
+        drawing.text(column(3), bottom, "equal time, crop", label_size);
+        drawing.text(column(4), bottom, "its error", label_size);
     }
-    return canvas.image();
+    return drawing.image();
 }
 
 void write_row(const std::string& stem, const QualityRow& row, const Image& picture, const Image& reference,
@@ -180,13 +207,13 @@ void write_row(const std::string& stem, const QualityRow& row, const Image& pict
     Image error = picture;
     for (std::size_t p = 0; p < error.pixels.size(); ++p) error.pixels[p] = error.pixels[p] - reference.pixels[p];
     deliveries.attempt([&] { tracer::write_image(stem + "_error.exr", error); });
-    Canvas canvas(error.width, error.height + ScaleBar::height + 2 * line + 8);
-    const auto luminance = luminance_error(picture, reference);
-    for (std::uint32_t y = 0; y < error.height; ++y)
-        for (std::uint32_t x = 0; x < error.width; ++x)
-            canvas.fill(x, y, 1, 1, scale.of(luminance[std::size_t{y} * error.width + x]));
-    ScaleBar::draw(canvas, 0, error.height + 4, error.width, scale, "luminance minus reference");
-    deliveries.attempt([&] { tracer::write_screen_image(stem + "_error.png", canvas.image()); });
+    const auto width = static_cast<int>(error.width), height = static_cast<int>(error.height);
+    const auto drawing = tracer::make_drawing(width, height + scale_bar_height + 2 * line + 8);
+    std::vector<float> shares;
+    for (const double value : luminance_error(picture, reference)) shares.push_back(scale.share(value));
+    drawing->map(0, 0, width, shares, scale.colours);
+    draw_scale_bar(*drawing, 0, height + 4, width, scale, "luminance minus reference");
+    deliveries.attempt([&] { tracer::write_screen_image(stem + "_error.png", drawing->image()); });
     const auto& blocks = row.errors.sums.blocks;
     if (blocks.columns > 0 && blocks.rows > 0)
         deliveries.attempt([&] {

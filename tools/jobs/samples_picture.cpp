@@ -4,22 +4,31 @@
 
 #include <algorithm>
 
-#include "tools/jobs/canvas.hpp"
-#include "tools/jobs/pixel_font.hpp"
+#include "tools/jobs/colour_scale.hpp"
 
 namespace raycache::tools {
 namespace {
 
-constexpr unsigned margin = 20, panel = 512, text_scale = 2, line = glyph_height * text_scale + 4;
+using tracer::Colour;
+
+constexpr int margin = 20, panel = 512;
 constexpr unsigned cross = 3;  ///< pixels from the middle of a base point's cross to its ends
+constexpr Colour black{0, 0, 0};
 
 unsigned place(std::uint32_t u) { return static_cast<unsigned>(std::uint64_t{u} * panel >> 32); }
 
-/// Neighbouring indices lie far apart in a low-discrepancy sequence; a stride through the colours keeps them apart too.
-Colour colour_of(std::size_t sample) {
+/// A colour for each sample: neighbouring indices lie far apart in a low-discrepancy sequence; a stride through the
+/// colours keeps them apart too.
+std::vector<Colour> sample_colours(std::size_t samples) {
     constexpr double golden = 0.6180339887498949;
-    const double at = golden * static_cast<double>(sample);
-    return viridis(0.95 * (at - static_cast<double>(static_cast<std::size_t>(at))));
+    std::vector<float> shares;
+    for (std::size_t i = 0; i < samples; ++i) {
+        const double at = golden * static_cast<double>(i);
+        shares.push_back(static_cast<float>(0.95 * (at - static_cast<double>(static_cast<std::size_t>(at)))));
+    }
+    const auto drawing = tracer::make_drawing(static_cast<int>(samples), 1);
+    drawing->map(0, 0, static_cast<int>(samples), shares, viridis());
+    return drawing->image().pixels;
 }
 
 std::string caption(const SampleUnion& u) {
@@ -30,39 +39,44 @@ std::string caption(const SampleUnion& u) {
                        u.density->max);
 }
 
-void draw_panel(Canvas& canvas, unsigned left, unsigned top, const SampleUnion& u) {
-    const unsigned size = u.points.size() > 200'000 ? 1 : 2;
+/// All points of the unit square, y upwards.
+tracer::ScreenImage draw_points(const SampleUnion& u) {
+    tracer::ScreenImage image{panel, panel, std::vector<Colour>(std::size_t{panel} * panel, {255, 255, 255})};
     const auto dot = [&](const tracer::FixedPoint2& p, unsigned width, unsigned height, Colour colour) {
         const unsigned x = place(p.x), y = panel - 1 - place(p.y);
         const unsigned x0 = x - std::min(x, width / 2), y0 = y - std::min(y, height / 2);
-        canvas.fill(left + x0, top + y0, std::min(width, panel - x0), std::min(height, panel - y0), colour);
+        for (unsigned row = y0; row < std::min<unsigned>(y0 + height, panel); ++row)
+            for (unsigned column = x0; column < std::min<unsigned>(x0 + width, panel); ++column)
+                image.pixels[std::size_t{row} * panel + column] = colour;
     };
-    for (std::size_t i = 0; i < u.points.size(); ++i) dot(u.points[i], size, size, colour_of(i % u.base.size()));
+    const unsigned size = u.points.size() > 200'000 ? 1 : 2;
+    const std::vector<Colour> colours = sample_colours(u.base.size());
+    for (std::size_t i = 0; i < u.points.size(); ++i) dot(u.points[i], size, size, colours[i % u.base.size()]);
     for (const tracer::FixedPoint2& p : u.base) {
-        dot(p, 2 * cross + 1, 1, {0, 0, 0});
-        dot(p, 1, 2 * cross + 1, {0, 0, 0});
+        dot(p, 2 * cross + 1, 1, black);
+        dot(p, 1, 2 * cross + 1, black);
     }
-    canvas.outline(left - 1, top - 1, panel + 2, panel + 2, {0, 0, 0});
+    return image;
 }
 
 }  // namespace
 
 tracer::ScreenImage draw_samples(const std::string& title, const std::vector<SamplesPanel>& panels) {
-    const auto columns = static_cast<unsigned>(std::min<std::size_t>(2, panels.size()));
-    const auto rows = static_cast<unsigned>((panels.size() + columns - 1) / columns);
-    const unsigned row_height = panel + 2 * line + margin, head = margin + 2 * line;
-    unsigned width = margin + columns * (panel + margin);
-    width = std::max(width, 2 * margin + Canvas::text_width(title, text_scale));
-    Canvas canvas(width, head + rows * row_height);
-    canvas.text(margin, margin, title, text_scale);
+    const auto columns = static_cast<int>(std::min<std::size_t>(2, panels.size()));
+    const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+    const int row_height = panel + 2 * label_line + margin, head = margin + 2 * label_line;
+    const int width = std::max(margin + columns * (panel + margin), 2 * margin + tracer::text_width(title, label_size));
+    const auto drawing = tracer::make_drawing(width, head + rows * row_height);
+    drawing->text(margin, margin, title, label_size);
     for (std::size_t i = 0; i < panels.size(); ++i) {
-        const auto column = static_cast<unsigned>(i % columns), row = static_cast<unsigned>(i / columns);
-        const unsigned x = margin + column * (panel + margin), y = head + row * row_height;
-        canvas.text(x, y, panels[i].title, text_scale);
-        draw_panel(canvas, x, y + line, *panels[i].samples);
-        canvas.text(x, y + line + panel + 4, caption(*panels[i].samples), text_scale);
+        const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+        const int x = margin + column * (panel + margin), y = head + row * row_height;
+        drawing->text(x, y, panels[i].title, label_size);
+        drawing->paste(x, y + label_line, draw_points(*panels[i].samples));
+        drawing->frame(x - 1, y + label_line - 1, panel + 2, panel + 2, black);
+        drawing->text(x, y + label_line + panel + 4, caption(*panels[i].samples), label_size);
     }
-    return canvas.image();
+    return drawing->image();
 }
 
 }  // namespace raycache::tools

@@ -11,7 +11,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/width_option.hpp"
-#include "traces/error.hpp"
+#include "tracer/drawing.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -78,6 +78,7 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
         else
             warn_of_idle(*command, job.launches.captures());
         check_outputs(outputs, warn);
+        if (job.pixels) tracer::check_drawing();
         const auto limit = o->threads.apply();
         Progress progress("explain");
         publish(*o, run(job, gpu, progress, outputs));

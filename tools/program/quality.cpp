@@ -7,6 +7,7 @@
 #include "tools/program/idle_options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/quality_options.hpp"
+#include "tracer/drawing.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -40,6 +41,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
         FileNames pictures;
         if (!o->output.empty()) {
             check_picture_folder(o->output);
+            tracer::check_drawing();
             pictures = quality_picture_names(o->output, captures);
         }
         Deliveries deliveries;

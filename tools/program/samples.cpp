@@ -13,6 +13,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/progress.hpp"
+#include "tracer/drawing.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -66,6 +67,7 @@ void write_figure2(const Options& o) {
 
 void run(const Options& o, const Command& command) {
     check_outputs({o.csv, o.picture, o.figure2}, warn);
+    if (!o.picture.empty() || !o.figure2.empty()) tracer::check_drawing();
     const auto limit = o.threads.apply();
     Progress progress("samples");
     const Stage stage(progress, "points");
