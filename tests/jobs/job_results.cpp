@@ -128,6 +128,18 @@ TEST_CASE("A capture job writes the trace that a replay job reads, with the coun
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("The result of samples reads back with every point") {
+    tools::SamplesJob job;
+    job.strategy.spp = 16;
+    job.copies = 9;
+    tools::Observer silent;
+    const auto result = run(job, silent), read = read_back(result);
+    CHECK(to_text(read.samples) == to_text(result.samples));
+    CHECK(to_json(read.samples) == to_json(result.samples));
+    CHECK(to_csv(read.samples) == to_csv(result.samples));
+    CHECK(result.samples.points.size() == 144);
+}
+
 TEST_CASE("A damaged or foreign text is no result") {
     tools::ReplayJob job{test::small_launches({"owen"}), {{"h100"}, {}, {}, {}, 0}, false};
     tools::Observer silent;

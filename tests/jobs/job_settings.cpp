@@ -12,8 +12,8 @@ using test::refusal_of_job;
 using tools::job_text;
 using tools::parse_job;
 
-const std::vector<tools::AnyJob> all_jobs{tools::CaptureJob{}, tools::RenderJob{}, tools::ReplayJob{},
-                                          tools::ExplainJob{}, tools::QualityJob{}};
+const std::vector<tools::AnyJob> all_jobs{tools::CaptureJob{}, tools::RenderJob{},  tools::ReplayJob{},
+                                          tools::ExplainJob{}, tools::QualityJob{}, tools::SamplesJob{}};
 
 TEST_CASE("The text of every job reads back as the same job") {
     REQUIRE(all_jobs.size() == std::variant_size_v<tools::AnyJob>);
@@ -70,7 +70,8 @@ TEST_CASE("A value of the wrong type is refused in one line that names its key")
         {R"({"job": "capture", "output": true})", "\"output\": expected a text"},
         {R"({"job": "quality", "clamp": "nan"})", "\"clamp\": expected a number"},
         {R"({"job": "explain", "by": "bonce"})", "\"by\": expected one of: none, bounce, ray"},
-        {R"({"job": "fly"})", "\"job\": expected one of: capture, render, replay, explain, quality, found \"fly\""},
+        {R"({"job": "fly"})",
+         "\"job\": expected one of: capture, render, replay, explain, quality, samples, found \"fly\""},
         {R"({"timed": true})", "key \"job\" is missing"},
         {R"([1])", "expected an object"},
         {R"({"job": "replay", "timed": true, "timed": false})", "found \"timed\" twice"},

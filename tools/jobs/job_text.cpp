@@ -15,8 +15,8 @@ namespace raycache::tools {
 namespace {
 
 /// In the order of AnyJob and AnyResult.
-constexpr std::array<const char*, std::variant_size_v<AnyJob>> names{"capture", "render", "replay", "explain",
-                                                                     "quality"};
+constexpr std::array<const char*, std::variant_size_v<AnyJob>> names{"capture", "render",  "replay",
+                                                                     "explain", "quality", "samples"};
 static_assert(std::variant_size_v<AnyResult> == names.size());
 
 /// The alternative of that index, with its defaults.

@@ -16,12 +16,13 @@
 #include "tools/jobs/quality_job.hpp"
 #include "tools/jobs/render_job.hpp"
 #include "tools/jobs/replay_job.hpp"
+#include "tools/jobs/samples_job.hpp"
 
 namespace raycache::tools {
 
-using AnyJob = std::variant<CaptureJob, RenderJob, ReplayJob, ExplainJob, QualityJob>;
+using AnyJob = std::variant<CaptureJob, RenderJob, ReplayJob, ExplainJob, QualityJob, SamplesJob>;
 /// Of the job of the same index.
-using AnyResult = std::variant<CaptureResult, RenderResult, ReplayResult, ExplainResult, QualityResult>;
+using AnyResult = std::variant<CaptureResult, RenderResult, ReplayResult, ExplainResult, QualityResult, SamplesResult>;
 
 /// "capture", "render", …: what the key "job" of its text says.
 std::string job_name(const AnyJob&);

@@ -1,4 +1,4 @@
-// The keys of the result of a quality job.
+// The keys of the results of quality and samples jobs.
 #pragma once
 
 #include "tools/jobs/result_fields.hpp"
@@ -188,6 +188,55 @@ struct Fields<QualityReport> {
                                     Field{"rows", &S::rows},
                                     Field{"notes", &S::notes},
                                     Field{"subject", &S::subject}};
+};
+
+template <>
+struct Codec<tracer::FixedPoint2> {
+    static Json write(const tracer::FixedPoint2& point) { return {point.x, point.y}; }
+    static void read(const Reader& reader, const Json& json, const std::string& place, tracer::FixedPoint2& point) {
+        std::array<std::uint32_t, 2> both{};
+        reader.read(json, place, both);
+        point = {both[0], both[1]};
+    }
+};
+
+template <>
+struct Fields<tracer::UnionDensity::Level> {
+    using S = tracer::UnionDensity::Level;
+    static constexpr std::tuple all{Field{"covered_by", &S::covered_by}, Field{"density", &S::density},
+                                    Field{"area", &S::area}};
+};
+
+template <>
+struct Fields<tracer::UnionDensity> {
+    using S = tracer::UnionDensity;
+    static constexpr std::tuple all{Field{"min", &S::min}, Field{"max", &S::max}, Field{"mean_square", &S::mean_square},
+                                    Field{"levels", &S::levels}};
+};
+
+template <>
+struct Fields<SampleUnion> {
+    using S = SampleUnion;
+    static constexpr std::tuple all{Field{"strategy", &S::strategy},
+                                    Field{"first_dimension", &S::first_dimension},
+                                    Field{"second_dimension", &S::second_dimension},
+                                    Field{"copies", &S::copies},
+                                    Field{"parameters", &S::parameters},
+                                    Field{"warnings", &S::warnings},
+                                    Field{"base", &S::base},
+                                    Field{"points", &S::points},
+                                    Field{"mu", &S::mu},
+                                    Field{"base_hole", &S::base_hole},
+                                    Field{"union_hole", &S::union_hole},
+                                    Field{"hole_free_k", &S::hole_free_k},
+                                    Field{"discrepancy", &S::discrepancy},
+                                    Field{"density", &S::density}};
+};
+
+template <>
+struct Fields<SamplesResult> {
+    using S = SamplesResult;
+    static constexpr std::tuple all{Field{"samples", &S::samples}};
 };
 
 template <>

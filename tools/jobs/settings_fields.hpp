@@ -71,15 +71,22 @@ template <>
 struct Fields<CaptureJob> {
     using S = CaptureJob;
     static constexpr std::tuple all{Field{"scene", &S::scene}, Field{"sampling", &S::sampling},
-                                    Field{"strategy", &S::strategy}, Field{"output", &S::output}};
+                                    Field{"case", &S::strategy}, Field{"output", &S::output}};
 };
 
 template <>
 struct Fields<RenderJob> {
     using S = RenderJob;
-    static constexpr std::tuple all{Field{"scene", &S::scene},       Field{"sampling", &S::sampling},
-                                    Field{"strategy", &S::strategy}, Field{"exposure", &S::exposure},
-                                    Field{"clamp", &S::clamp},       Field{"output", &S::output}};
+    static constexpr std::tuple all{Field{"scene", &S::scene},   Field{"sampling", &S::sampling},
+                                    Field{"case", &S::strategy}, Field{"exposure", &S::exposure},
+                                    Field{"clamp", &S::clamp},   Field{"output", &S::output}};
+};
+
+template <>
+struct Fields<SamplesJob> {
+    using S = SamplesJob;
+    static constexpr std::tuple all{Field{"sampling", &S::sampling}, Field{"case", &S::strategy},
+                                    Field{"dimensions", &S::dimensions}, Field{"copies", &S::copies}};
 };
 
 template <>

@@ -3,9 +3,9 @@
 #include <fmt/ranges.h>
 
 #include "tools/jobs/outputs.hpp"
+#include "tools/jobs/samples_job.hpp"
 #include "tools/jobs/samples_picture.hpp"
 #include "tools/jobs/samples_tables.hpp"
-#include "tools/jobs/samples_union.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
@@ -29,15 +29,19 @@ struct Options {
     ThreadOptions threads;
 };
 
-SampleUnion make(const Options& o, const std::string& strategy, const std::string& k) {
-    SamplingOptions sampling = o.sampling;
-    if (!k.empty()) {
-        sampling.k = k;
-        sampling.s = "2";
-        sampling.mu.clear();
+SamplesJob job_of(const Options& o) {
+    return {o.sampling, {o.strategy, o.sequence, o.spp, {}, {}}, {o.dimensions[0], o.dimensions[1]}, o.copies};
+}
+
+SampleUnion make(SamplesJob job, const std::string& strategy, std::optional<double> k) {
+    job.strategy.strategy = strategy;
+    if (k) {
+        job.sampling.k = fmt::format("{}", *k);
+        job.sampling.s = "2";
+        job.sampling.mu.clear();
     }
-    return make_sample_union(sampling.strategy(o.sequence, strategy, o.spp), o.dimensions[0], o.dimensions[1],
-                             o.copies);
+    Observer silent;  // of these panels nobody asked
+    return run(job, silent).samples;
 }
 
 void check_picture_name(const char* option, const std::string& path) {
@@ -53,11 +57,11 @@ std::string subject(const Options& o) {
 /// For an N that the star discrepancy is known of. K below the hole-free one by half leaves holes; the paper's own K
 /// comes from the star discrepancy.
 void write_figure2(const Options& o) {
-    const SampleUnion coherent = make(o, "coherent", "");
+    const SamplesJob job = job_of(o);
+    const SampleUnion coherent = make(job, "coherent", {});
     const double from_discrepancy = coherent.k_from_discrepancy().value(), small = coherent.hole_free_k / 2;
-    const SampleUnion narrow = make(o, "micro-jitter", fmt::format("{}", small)),
-                      right = make(o, "micro-jitter", fmt::format("{}", from_discrepancy)),
-                      rotated = make(o, "cranley-patterson", "");
+    const SampleUnion narrow = make(job, "micro-jitter", small), right = make(job, "micro-jitter", from_discrepancy),
+                      rotated = make(job, "cranley-patterson", {});
     tracer::write_screen_image(
         o.figure2, draw_samples(subject(o), {{"coherent", &coherent},
                                              {fmt::format("micro-jitter, mu too small, K {:.2f}", small), &narrow},
@@ -70,12 +74,11 @@ void run(const Options& o, const Command& command) {
     if (!o.picture.empty() || !o.figure2.empty()) tracer::check_drawing();
     const auto limit = o.threads.apply();
     Progress progress("samples");
-    const Stage stage(progress, "points");
-    const SampleUnion samples = make(o, o.strategy, "");
+    const SamplesJob job = job_of(o);
     tracer::CaptureSettings one;
-    one.strategy = samples.strategy;
-    for (const auto& lines : {idle_options(command, {&one, 1}, {false, "only points are shown"}), samples.warnings})
-        for (const std::string& line : lines) warn(line);
+    one.strategy = job.settings();
+    for (const std::string& line : idle_options(command, {&one, 1}, {false, "only points are shown"})) warn(line);
+    const SampleUnion samples = run(job, progress).samples;
     Deliveries deliveries;
     deliveries.attempt([&] { print(o.json ? o.json.document(to_json(samples)) : to_text(samples)); });
     if (!o.csv.empty()) deliveries.attempt([&] { write_text(o.csv, to_csv(samples)); });
