@@ -26,7 +26,7 @@ CaptureSettings checked(CaptureSettings settings) {
     check_size(settings.width, "width");
     check_size(settings.height, "height");
     check(settings.paths);
-    check_execution(settings.execution);
+    check_execution(settings.execution, integrator_entry(settings.paths.integrator));
     settings.strategy.parameters.width = settings.width;
     return settings;
 }
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> choose_launches(const CaptureSettings& settings, std:
 }
 
 std::vector<traces::Region> make_regions(const PreparedScene& scene) {
-    std::vector<traces::Region> regions = bvh2_regions(scene.bvh());
+    std::vector<traces::Region> regions = scene.bvh().regions();
     if (scene.texels().count() != 0) {
         traces::Region texels;
         texels.kind = traces::ObjectKind::texel;
@@ -65,7 +65,7 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
     p.decorrelation = settings.strategy.decorrelation;
     p.parameters = strategy.parameters();
     p.thread_map = grid.name();
-    p.layout = "bvh2";
+    p.layout = scene.layout();
     p.spp = settings.strategy.parameters.spp;
     p.seed = settings.strategy.parameters.seed;
     p.width = settings.width;
@@ -81,7 +81,7 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
 Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     : scene_(scene),
       settings_(checked(settings)),
-      strategy_(settings_.strategy, path_dimensions(settings.paths.bounces)),
+      strategy_(settings_.strategy, sample_dimensions(settings_.paths)),
       camera_(scene.camera(), settings.width, settings.height),
       grid_(settings.thread_map, settings.width, settings.height, settings.strategy.parameters.spp,
             settings.strategy.parameters.interleave) {
@@ -102,9 +102,8 @@ Capture::~Capture() = default;
 
 void Capture::plan_wavefront() {
     order_ = ray_order_entry(settings_.execution.order).make(scene_.scene());
-    // Without shadow rays a last ray of each path looks for the lights.
-    const bool lit = !scene_.lights().empty(), shadows = lit && settings_.paths.lights != LightSampling::bsdf;
-    kernels_ = wavefront_kernels(settings_.paths.bounces + (lit && !shadows ? 1 : 0), order_ != nullptr, shadows);
+    const StagePlan plan = integrator_entry(settings_.paths.integrator).stages(settings_.paths, scene_.lights());
+    kernels_ = wavefront_kernels(plan, order_ != nullptr);
     const std::uint64_t paths = std::uint64_t{grid_.warps()} * traces::warp_lanes;
     if (paths > max_wavefront_paths)
         throw UsageError(fmt::format(
@@ -155,15 +154,13 @@ void Capture::trace_warp(Worker& worker, std::uint32_t launch, std::uint32_t war
     std::array<PathLane, traces::warp_lanes> jobs;
     std::array<Vec3, traces::warp_lanes> radiance;
     const std::uint32_t mask = lane_jobs(launch, warp, jobs);
-    if (mask != 0) worker.integrator.trace(mask, jobs, radiance);
+    if (mask != 0) worker.integrator->trace(mask, jobs, radiance);
     worker.recorder.store(out);
 }
 
 void Capture::last_symbols(const Worker& worker, traces::WarpSymbols& out) const {
-    const Bvh2& bvh = scene_.bvh();
     out.clear();
-    if (bvh.stack_entries <= traces::symbol_stack_entries && bvh.nodes.front().child[1] != ChildRef::nothing)
-        worker.recorder.store_symbols(out);
+    if (scene_.bvh().symbols_known()) worker.recorder.store_symbols(out);
 }
 
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tracer/paths/path_integrator.hpp"
+#include "tracer/paths/integrators/integrator.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/simt/execution.hpp"
@@ -64,7 +64,7 @@ public:
     std::unique_ptr<Wavefront> begin_wavefront(std::uint32_t launch) const;
 
     /// The symbols of the warp of a megakernel that this worker traced last, for traces::encode_block; empty where they
-    /// are not known: in trees deeper than symbols can speak of, or of one leaf.
+    /// are not known (BvhLayout::symbols_known()).
     void last_symbols(const Worker&, traces::WarpSymbols& out) const;
 
     /// The lanes' jobs of a warp, for programs that walk the same rays by other means (benchmarks).

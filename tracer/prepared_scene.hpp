@@ -1,12 +1,14 @@
 // A scene with everything derived from it once: BVH, lights, texel layout. Shared by all captures and renders of it.
 #pragma once
 
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "tracer/bvh/bvh.hpp"
 #include "tracer/bvh/embree_scene.hpp"
-#include "tracer/bvh/layouts/bvh2.hpp"
+#include "tracer/bvh/layouts/layout.hpp"
 #include "tracer/paths/lights.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/scene/texel_layout.hpp"
@@ -15,18 +17,23 @@ namespace raycache::tracer {
 
 class PreparedScene {
 public:
-    PreparedScene(Scene scene, const BvhSettings& settings)
-        : scene_(with_offset_scale(std::move(scene))), settings_(settings), lights_(scene_), texels_(scene_) {}
+    /// `layout`: a name of bvh_layouts(). Throws UsageError for another.
+    PreparedScene(Scene scene, const BvhSettings& settings, const std::string& layout = default_layout)
+        : scene_(with_offset_scale(std::move(scene))),
+          settings_(settings),
+          layout_(bvh_layout_entry(layout)),
+          lights_(scene_),
+          texels_(scene_) {}
     PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     const Scene& scene() const { return scene_; }
     /// Built when first asked for, as embree() is: a capture needs the one, a render the other. May be called by
     /// several threads.
-    const Bvh2& bvh() const {
+    const BvhLayout& bvh() const {
         std::call_once(bvh_once_, [this] {
             scene_.charge(scene_.triangle_count() * bvh_bytes, "BVH of its triangles");
-            bvh_.emplace(make_bvh2(build_bvh(scene_, settings_), scene_));
+            bvh_ = layout_.make(build_bvh(scene_, settings_), scene_);
         });
         return *bvh_;
     }
@@ -37,6 +44,7 @@ public:
         });
         return *embree_;
     }
+    const std::string& layout() const { return layout_.name; }
     const Lights& lights() const { return lights_; }
     const TexelLayout& texels() const { return texels_; }
     const Camera& camera() const { return scene_.cameras.front(); }
@@ -52,10 +60,11 @@ private:
 
     Scene scene_;
     BvhSettings settings_;
+    const BvhLayoutEntry& layout_;
     Lights lights_;
     TexelLayout texels_;
     mutable std::once_flag bvh_once_, embree_once_;
-    mutable std::optional<Bvh2> bvh_;
+    mutable std::unique_ptr<const BvhLayout> bvh_;
     mutable std::optional<EmbreeScene> embree_;
 };
 

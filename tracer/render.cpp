@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "tracer/paths/embree_traversal.hpp"
+#include "tracer/paths/integrators/integrator.hpp"
 #include "tracer/simt/thread_map.hpp"
 #include "traces/error.hpp"
 #include "traces/memory_budget.hpp"
@@ -20,11 +21,12 @@ struct Worker {
     Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy,
            const PathSettings& paths)
         : traversal(scene.embree()),
-          integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal) {}
+          integrator(integrator_entry(paths.integrator)
+                         .make({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal})) {}
     Worker(const Worker&) = delete;  // its parts point at each other
 
     EmbreeTraversal traversal;
-    PathIntegrator<EmbreeTraversal> integrator;
+    std::unique_ptr<Integrator> integrator;
 };
 
 Vec3 clamped(Vec3 radiance, std::optional<float> limit) {
@@ -44,7 +46,7 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
              const std::function<void(std::uint64_t paths)>& progress) {
     StrategySettings of_picture = settings.strategy;
     of_picture.parameters.width = settings.width;
-    const SamplingStrategy strategy(of_picture, path_dimensions(settings.paths.bounces));
+    const SamplingStrategy strategy(of_picture, sample_dimensions(settings.paths));
     const CameraRays camera(scene.camera(), settings.width, settings.height);
     const std::uint64_t spp = settings.strategy.parameters.spp;
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
@@ -71,7 +73,7 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
                     const LaneJob& job = jobs.lane[l];
                     lanes[l] = {job.x, job.y, job.y * settings.width + job.x, job.sample, base.data()};
                 }
-                workers.local()->integrator.trace(jobs.mask, lanes, radiance);
+                workers.local()->integrator->trace(jobs.mask, lanes, radiance);
                 for (unsigned l = 0; l < traces::warp_lanes; ++l) {
                     if (((jobs.mask >> l) & 1U) == 0) continue;
                     image.pixels[lanes[l].pixel] += clamped(radiance[l], settings.clamp) / static_cast<float>(spp);

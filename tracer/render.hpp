@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tracer/image.hpp"
-#include "tracer/paths/path_integrator.hpp"
+#include "tracer/paths/path_settings.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 

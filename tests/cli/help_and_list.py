@@ -5,7 +5,7 @@ import re
 from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "export", "import", "list"]
-TOPICS = ["strategies", "sequences", "gpus", "layouts", "thread-maps", "orders", "scenes"]
+TOPICS = ["strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes"]
 
 
 class HelpAndList(ProgramTest):

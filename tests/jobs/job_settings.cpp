@@ -118,5 +118,27 @@ TEST_CASE("Settings that make no sense are refused when the job is run, before a
     CHECK_THAT(refusal(quality), Contains("1 to 1024"));
 }
 
+TEST_CASE("A layout or an integrator that does not exist is refused before the scene is loaded, with the closest") {
+    tools::SceneSettings scene;
+    scene.source = "no scene of this name";
+    scene.layout = "bvh2-breadth-frist";
+    tools::Observer nobody;
+    CHECK_THROWS_WITH(scene.prepare({}, nobody), Contains("did you mean 'bvh2-breadth-first'?"));
+    tools::SamplingSettings sampling;
+    sampling.integrator = "pth";
+    CHECK_THROWS_WITH(sampling.paths(), Contains("did you mean 'path'?"));
+}
+
+TEST_CASE("The command of a trace names layout and integrator where they are not the usual ones") {
+    tools::SceneSettings scene;
+    scene.source = "courtyard";
+    const tools::SamplingSettings sampling;
+    CHECK_THAT(capture_settings(scene, sampling, tools::CaseSettings{}).command,
+               !Contains("--layout") && !Contains("--integrator"));
+    scene.layout = "bvh2-breadth-first";
+    CHECK_THAT(capture_settings(scene, sampling, tools::CaseSettings{}).command,
+               Contains(" --layout bvh2-breadth-first ") && !Contains("--integrator"));
+}
+
 }  // namespace
 }  // namespace raycache

@@ -4,6 +4,7 @@
 
 #include "test_rays.hpp"
 #include "tracer/bvh/layouts/bvh2.hpp"
+#include "tracer/simt/warp_traversal.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
@@ -14,16 +15,16 @@ TEST_CASE("bvh2: a node takes 64 bytes with its boxes first, a triangle 48 with 
     CHECK(sizeof(Bvh2Node) == 64);
     CHECK(offsetof(Bvh2Node, x) == 0);
     CHECK(offsetof(Bvh2Node, child) == 48);
-    CHECK(sizeof(Bvh2Triangle) == 48);
-    CHECK(offsetof(Bvh2Triangle, v1) == 16);
-    CHECK(offsetof(Bvh2Triangle, v2) == 32);
+    CHECK(sizeof(LeafTriangle) == 48);
+    CHECK(offsetof(LeafTriangle, v1) == 16);
+    CHECK(offsetof(LeafTriangle, v2) == 32);
 }
 
 TEST_CASE("bvh2: nodes and triangles are those of the tree, inner nodes in depth-first order") {
     const Scene scene = soup(3000, 0.2F, 1);
     for (const bool splits : {false, true}) {
         const Bvh bvh = build_bvh(scene, {4, splits});
-        const Bvh2 made = make_bvh2(bvh, scene);
+        const Bvh2 made = *Bvh2::make(bvh, scene);
         REQUIRE(made.triangles.size() == bvh.triangles.size());
         for (std::size_t i = 0; i < made.triangles.size(); ++i) {
             const std::uint32_t t = bvh.triangles[i];
@@ -60,39 +61,39 @@ TEST_CASE("bvh2: nodes and triangles are those of the tree, inner nodes in depth
             }
         }
         CHECK(expected == made.nodes.size());
-        CHECK(made.stack_entries >= bvh.depth);
+        CHECK(made.siblings >= bvh.depth);
     }
 }
 
 TEST_CASE("bvh2: the link table names each node's children and leads to every element once") {
     const Scene scene = soup(3000, 0.2F, 2);
-    const Bvh2 bvh = make_bvh2(build_bvh(scene), scene);
-    const auto regions = bvh2_regions(bvh);
+    const Bvh2 bvh = *Bvh2::make(build_bvh(scene), scene);
+    const auto regions = bvh.regions();
     REQUIRE(regions.size() == 2);
-    CHECK(regions[node_region].kind == traces::ObjectKind::node);
-    CHECK(regions[node_region].stride == 64);
-    CHECK(regions[node_region].element_size == 64);
-    CHECK(regions[node_region].count == bvh.nodes.size());
-    CHECK(regions[node_region].degree == 2);
-    CHECK(regions[triangle_region].kind == traces::ObjectKind::triangle);
-    CHECK(regions[triangle_region].stride == 48);
-    CHECK(regions[triangle_region].element_size == 48);
-    CHECK(regions[triangle_region].count == bvh.triangles.size());
-    CHECK(regions[triangle_region].links.empty());
+    CHECK(regions[Bvh2::node_region].kind == traces::ObjectKind::node);
+    CHECK(regions[Bvh2::node_region].stride == 64);
+    CHECK(regions[Bvh2::node_region].element_size == 64);
+    CHECK(regions[Bvh2::node_region].count == bvh.nodes.size());
+    CHECK(regions[Bvh2::node_region].degree == 2);
+    CHECK(regions[Bvh2::triangle_region].kind == traces::ObjectKind::triangle);
+    CHECK(regions[Bvh2::triangle_region].stride == 48);
+    CHECK(regions[Bvh2::triangle_region].element_size == 48);
+    CHECK(regions[Bvh2::triangle_region].count == bvh.triangles.size());
+    CHECK(regions[Bvh2::triangle_region].links.empty());
     for (const auto& region : regions) CHECK(region.base % (2U << 20U) == 0);
     CHECK(regions[0].address(regions[0].count) <= regions[1].base);
 
-    const auto& links = regions[node_region].links;
+    const auto& links = regions[Bvh2::node_region].links;
     REQUIRE(links.size() == 2 * bvh.nodes.size());
     std::vector<int> nodes(bvh.nodes.size()), triangles(bvh.triangles.size());
     for (std::size_t i = 0; i < links.size(); ++i) {
         const std::uint32_t ref = bvh.nodes[i / 2].child[i % 2], element = links[i] & 0x3fffffffU;
         if (ChildRef::is_leaf(ref)) {
-            REQUIRE(links[i] >> 30 == triangle_region);
+            REQUIRE(links[i] >> 30 == Bvh2::triangle_region);
             REQUIRE(element == ChildRef::first(ref));
             for (std::uint32_t k = 0; k < ChildRef::count(ref); ++k) ++triangles.at(element + k);
         } else {
-            REQUIRE(links[i] >> 30 == node_region);
+            REQUIRE(links[i] >> 30 == Bvh2::node_region);
             REQUIRE(element == ref);
             ++nodes.at(element);
         }
@@ -110,7 +111,7 @@ TEST_CASE("bvh2: scenes of one to four triangles are a root with one or two chil
             append(scene, mesh({{-1, -1, z}, {1, -1, z}, {0, 1, z}}, {0, 1, 2}));
         }
         const PreparedScene prepared(std::move(scene), BvhSettings{});
-        const auto regions = bvh2_regions(prepared.bvh());
+        const auto regions = prepared.bvh().regions();
         std::uint32_t leaves = 0;
         for (const std::uint32_t link : regions[0].links) leaves += link != traces::no_link && link >> 30 == 1;
         CHECK(leaves >= 1);
@@ -131,13 +132,13 @@ TEST_CASE("bvh2: a scene that is one leaf has a second child that leads nowhere 
     Bvh one_leaf;
     one_leaf.nodes.push_back({scene.bounds(), 0, 2});
     one_leaf.triangles = {0, 1};
-    const Bvh2 bvh = make_bvh2(one_leaf, scene);
+    const Bvh2 bvh = *Bvh2::make(one_leaf, scene);
     REQUIRE(bvh.nodes.size() == 1);
     CHECK(bvh.nodes[0].child[1] == ChildRef::nothing);
-    CHECK(bvh2_regions(bvh)[0].links == std::vector<std::uint32_t>{1U << 30, traces::no_link});
+    CHECK(bvh.regions()[0].links == std::vector<std::uint32_t>{1U << 30, traces::no_link});
     const TexelLayout texels(scene);
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene, bvh, texels, recorder);
+    WarpTraversal<Bvh2, NullRecorder> traversal(scene, bvh, texels, recorder);
     std::vector<Ray> rays(32);
     for (Ray& ray : rays) {
         ray.origin = {0.25F, 0.5F, 1};
@@ -160,7 +161,8 @@ TEST_CASE("bvh2: only triangles whose material can have holes are marked") {
     scene.materials[4].base_color_texture = 0;
     scene.materials[5].alpha = 0;
     for (std::size_t t = 0; t < 60; ++t) scene.material_of[t] = static_cast<std::uint16_t>(t % 6);
-    for (const Bvh2Triangle& t : make_bvh2(build_bvh(scene), scene).triangles)
+    const Bvh2 bvh = *Bvh2::make(build_bvh(scene), scene);
+    for (const LeafTriangle& t : bvh.triangles)
         CHECK(t.alpha == (t.triangle % 6 == 2 || t.triangle % 6 == 3 ? 1U : 0U));
 }
 
@@ -176,17 +178,17 @@ TEST_CASE("bvh2: a tree too deep for the layout is refused in one line") {
     deep.nodes.push_back({scene.bounds(), levels, 1});
     deep.triangles.push_back(1);
     deep.depth = levels;
-    CHECK_THROWS_AS(make_bvh2(deep, scene), Error);
-    CHECK_THROWS_WITH(make_bvh2(deep, scene), Catch::Contains("97 levels") && !Catch::Contains("\n"));
+    CHECK_THROWS_AS(Bvh2::make(deep, scene), Error);
+    CHECK_THROWS_WITH(Bvh2::make(deep, scene), Catch::Contains("97 levels") && !Catch::Contains("\n"));
     // One level less fits, and its stack is deep enough (AddressSanitizer looks on).
     deep.nodes.erase(deep.nodes.begin(), deep.nodes.begin() + 2);
     for (Bvh::Node& node : deep.nodes)
         if (!node.is_leaf()) node.first -= 2;
     deep.depth = 96;
-    const Bvh2 bvh = make_bvh2(deep, scene);
+    const Bvh2 bvh = *Bvh2::make(deep, scene);
     const TexelLayout texels(scene);
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene, bvh, texels, recorder);
+    WarpTraversal<Bvh2, NullRecorder> traversal(scene, bvh, texels, recorder);
     std::vector<Ray> rays(32);
     for (Ray& ray : rays) {
         ray.origin = {0.75F, 0.25F, 1};

@@ -44,7 +44,9 @@ inline std::string describe(const Ray& r, const Hit& ours, const Hit& embree) {
     return text;
 }
 
-inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
+/// `judge`: the same scene in layout bvh2, which the judge looks for candidates in.
+inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays,
+                                  const PreparedScene& judge) {
     const std::vector<Hit> ours = closest_hits(scene, rays);
     Comparison out;
     out.rays = rays.size();
@@ -60,7 +62,7 @@ inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene&
         // Both on one triangle: only t is in question.
         const auto candidates = ours[i].triangle == theirs.triangle
                                     ? std::vector{ExactRay(rays[i]).crossing(scene.scene(), theirs.triangle)}
-                                    : crossings(scene, rays[i]);
+                                    : crossings(judge, rays[i]);
         const bool right = justified(candidates, rays[i], ours[i]), other = justified(candidates, rays[i], theirs);
         out.ours_wrong += !right;
         out.embree_wrong += right && !other;
@@ -78,14 +80,19 @@ inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene&
     return out;
 }
 
-inline Comparison compare_any(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
+inline Comparison compare_closest(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
+    return compare_closest(scene, embree, rays, scene);
+}
+
+inline Comparison compare_any(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays,
+                              const PreparedScene& judge) {
     const std::vector<bool> ours = any_hits(scene, rays);
     Comparison out;
     out.rays = rays.size();
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const bool theirs = embree.occluded(rays[i]);
         if (ours[i] == theirs) continue;
-        const auto candidates = crossings(scene, rays[i]);
+        const auto candidates = crossings(judge, rays[i]);
         const bool right = justified(candidates, rays[i], bool{ours[i]}),
                    other = justified(candidates, rays[i], theirs);
         out.ours_wrong += !right;
@@ -95,6 +102,10 @@ inline Comparison compare_any(const PreparedScene& scene, const EmbreeScene& emb
             out.first_wrong = (ours[i] ? "occluded " : "free ") + describe(rays[i], {}, embree.intersect(rays[i]));
     }
     return out;
+}
+
+inline Comparison compare_any(const PreparedScene& scene, const EmbreeScene& embree, std::span<const Ray> rays) {
+    return compare_any(scene, embree, rays, scene);
 }
 
 }  // namespace raycache::tracer::test

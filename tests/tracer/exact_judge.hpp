@@ -158,7 +158,7 @@ private:
 /// Every triangle that the ray perhaps crosses between t_min and t_max.
 inline std::vector<Crossing> crossings(const PreparedScene& scene, const Ray& ray) {
     const ExactRay exact(ray);
-    const Bvh2& bvh = scene.bvh();
+    const auto& bvh = dynamic_cast<const Bvh2&>(scene.bvh());
     std::vector<Crossing> found;
     std::vector<std::uint32_t> stack{0};
     while (!stack.empty()) {

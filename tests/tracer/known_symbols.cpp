@@ -74,7 +74,7 @@ TEST_CASE("symbols: with them a trace holds the records that were traced, also w
         const Traced traced = trace(capture);
         std::size_t texels = 0, literals = 0;
         for (const auto& warp : traced.warps)
-            for (const traces::Record& r : warp.records) texels += r.region == texel_region;
+            for (const traces::Record& r : warp.records) texels += r.region == Bvh2::region_count;
         for (const auto& symbols : traced.symbols)
             literals += static_cast<std::size_t>(std::count(symbols.begin(), symbols.end(), traces::symbol::literal));
         CHECK(texels > 300);
@@ -119,7 +119,7 @@ TEST_CASE("symbols: those that do not fit the records are refused") {
         [](Warp& w, Symbols&) {
             for (std::size_t i = 0, e = 0; i < w.records.size(); ++i) {
                 if (!w.records[i].is_access()) continue;
-                if (w.records[i].region == texel_region) w.elements[e] = 1U << 29U;
+                if (w.records[i].region == Bvh2::region_count) w.elements[e] = 1U << 29U;
                 e += w.records[i].lanes();
             }
         },

@@ -18,15 +18,14 @@ struct Estimate {
 /// Mean brightness of a picture, from one picture after another.
 Estimate estimate(const PreparedScene& scene, const PathSettings& paths, std::uint32_t size, std::uint32_t samples) {
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    const auto traversal = make_traversal(scene, recorder);
     StrategySettings settings;
     settings.decorrelation = "random";
     settings.parameters.spp = samples;
     settings.parameters.seed = 1 + static_cast<std::uint64_t>(paths.lights);
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), size, size);
-    PathIntegrator<WarpTraversal<NullRecorder>> integrator(scene.scene(), camera, scene.lights(), scene.texels(),
-                                                           strategy, paths, traversal);
+    PathIntegrator integrator({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, *traversal});
     const LaunchGrid grid(ThreadMap::tile, size, size, samples);
     double sum = 0, squares = 0;
     for (std::uint32_t sample = 0; sample < samples; ++sample) {

@@ -5,26 +5,25 @@
 #include <vector>
 
 #include "test_rays.hpp"
-#include "tracer/paths/path_integrator.hpp"
+#include "tracer/paths/integrators/path_integrator.hpp"
 #include "tracer/simt/thread_map.hpp"
 
 namespace raycache::tracer::test {
 
 /// Walks rays as WarpTraversal does and keeps them.
-class RayCollector {
+class RayCollector final : public Traversal {
 public:
-    explicit RayCollector(const PreparedScene& scene)
-        : traversal_(scene.scene(), scene.bvh(), scene.texels(), recorder_) {}
+    explicit RayCollector(const PreparedScene& scene) : traversal_(make_traversal(scene, recorder_)) {}
 
-    void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {
+    void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) override {
         keep(mask, rays, closest_rays);
-        traversal_.closest(mask, type, bounce, rays, hits);
+        traversal_->closest(mask, type, bounce, rays, hits);
     }
-    std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) {
+    std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) override {
         keep(mask, rays, shadow_rays);
-        return traversal_.occluded(mask, type, bounce, rays);
+        return traversal_->occluded(mask, type, bounce, rays);
     }
-    void read_texels(std::uint32_t mask, traces::RayType, std::uint8_t, const std::uint32_t*) {
+    void read_texels(std::uint32_t mask, traces::RayType, std::uint8_t, const std::uint32_t*) override {
         texels += static_cast<std::size_t>(std::popcount(mask));
     }
 
@@ -36,12 +35,12 @@ private:
         for (; mask != 0; mask &= mask - 1) out.push_back(rays[std::countr_zero(mask)]);
     }
     NullRecorder recorder_;
-    WarpTraversal<NullRecorder> traversal_;
+    std::unique_ptr<Traversal> traversal_;
 };
 
 /// Traces pictures of `size` x `size` pixels with one sample after another by `traversal` while `go_on()` says so.
 /// Returns the sum of all paths' radiance.
-template <class Traversal, class GoOn>
+template <class GoOn>
 Vec3 trace_pictures(const PreparedScene& scene, Traversal& traversal, std::uint32_t size, const PathSettings& paths,
                     GoOn go_on) {
     constexpr std::uint32_t spp = 4096;
@@ -50,8 +49,7 @@ Vec3 trace_pictures(const PreparedScene& scene, Traversal& traversal, std::uint3
     settings.parameters.spp = spp;
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), size, size);
-    PathIntegrator<Traversal> integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths,
-                                         traversal);
+    PathIntegrator integrator({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal});
     const LaunchGrid grid(ThreadMap::tile, size, size, spp);
     double sum[3] = {};
     for (std::uint32_t sample = 0; sample < spp && go_on(); ++sample) {

@@ -48,9 +48,8 @@ TEST_CASE("paths: lanes that change places at every vertex give the radiance of 
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), 32, 32);
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
-    PathIntegrator<WarpTraversal<NullRecorder>> integrator(scene.scene(), camera, scene.lights(), scene.texels(),
-                                                           strategy, paths, traversal);
+    const auto traversal = make_traversal(scene, recorder);
+    PathIntegrator integrator({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, *traversal});
     const auto base = strategy.base_point(1);
     std::uint32_t lit = 0;
     for (std::uint32_t row = 0; row < 32; ++row) {
@@ -62,7 +61,7 @@ TEST_CASE("paths: lanes that change places at every vertex give the radiance of 
         PathLanes sets[2];
         for (unsigned l = 0; l < traces::warp_lanes; ++l) sets[0].job[l] = jobs[l];
         integrator.generate(all, sets[0]);
-        traversal.closest(all, traces::RayType::camera, 0, sets[0].rays, sets[0].hits);
+        traversal->closest(all, traces::RayType::camera, 0, sets[0].rays, sets[0].hits);
         std::array<Vec3, traces::warp_lanes> found{};
         // Ended lanes hand in their radiance; the others move on, turned by 5 places, into the other set.
         const auto move = [&](std::uint32_t before, std::uint32_t alive, const PathLanes& from, PathLanes& to) {
@@ -89,10 +88,10 @@ TEST_CASE("paths: lanes that change places at every vertex give the radiance of 
             stage(integrator.shade(alive, vertex, sets[now]));
             const std::uint32_t shadow = integrator.aim_at_light(alive, vertex, sets[now]);
             const std::uint32_t blocked =
-                shadow == 0 ? 0 : traversal.occluded(shadow, traces::RayType::shadow, bounce, sets[now].shadow_rays);
+                shadow == 0 ? 0 : traversal->occluded(shadow, traces::RayType::shadow, bounce, sets[now].shadow_rays);
             integrator.collect_light(shadow & ~blocked, sets[now]);
             stage(integrator.scatter(alive, vertex, sets[now]));
-            if (alive != 0) traversal.closest(alive, traces::RayType::bounce, bounce, sets[now].rays, sets[now].hits);
+            if (alive != 0) traversal->closest(alive, traces::RayType::bounce, bounce, sets[now].rays, sets[now].hits);
         }
         for (unsigned l = 0; l < traces::warp_lanes; ++l) {
             CHECK(found[l] == expected[l]);

@@ -5,6 +5,7 @@
 #include "path_rays.hpp"
 #include "tests/real_data.hpp"
 #include "tracer/bvh/embree_scene.hpp"
+#include "tracer/paths/directions.hpp"
 #include "tracer/paths/embree_traversal.hpp"
 #include "tracer/paths/surface.hpp"
 
@@ -19,7 +20,6 @@ struct Pictures {
 };
 
 /// Mean radiance of `samples` pictures.
-template <class Traversal>
 Vec3 mean(const PreparedScene& scene, Traversal& traversal, const Pictures& p) {
     const std::uint32_t warps = (p.size + 15) / 16 * ((p.size + 15) / 16) * 8;
     std::uint64_t asked = 0, enough = std::uint64_t{p.samples} * (warps + 1);
@@ -29,8 +29,8 @@ Vec3 mean(const PreparedScene& scene, Traversal& traversal, const Pictures& p) {
 
 Vec3 mean(const PreparedScene& scene, const Pictures& p) {
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
-    return mean(scene, traversal, p);
+    const auto traversal = make_traversal(scene, recorder);
+    return mean(scene, *traversal, p);
 }
 
 Camera camera_at(Vec3 eye, Vec3 forward, Vec3 up, float fov) { return {"test", eye, forward, up, fov}; }
@@ -166,7 +166,7 @@ TEST_CASE("paths: a picture is the same with Embree in the traversal's place") {
     scene.cameras = {camera_at({0, 1, 6}, {0, 0, -1}, {0, 1, 0}, 40)};
     const PreparedScene prepared(std::move(scene), {});
     const EmbreeScene embree(prepared.scene());
-    const EmbreeTraversal traversal(embree);
+    EmbreeTraversal traversal(embree);
     const Pictures pictures{64, 4, {3, false}};
     const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
     for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));
@@ -190,7 +190,7 @@ TEST_CASE(
     Scene closed = scene;
     for (Material& m : closed.materials) m.alpha_mask = false;
     const PreparedScene prepared(std::move(scene), {}), solid(std::move(closed), {});
-    const EmbreeTraversal traversal(prepared.embree()), without_holes(solid.embree());
+    EmbreeTraversal traversal(prepared.embree()), without_holes(solid.embree());
     const Pictures pictures{64, 4, {3, false}};
     const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
     for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));
@@ -202,7 +202,7 @@ TEST_CASE("paths: the Cornell box is the same with Embree in the traversal's pla
     if (!path) return;
     const PreparedScene prepared(load_gltf(*path, nullptr), {});
     const EmbreeScene embree(prepared.scene());
-    const EmbreeTraversal traversal(embree);
+    EmbreeTraversal traversal(embree);
     const Pictures pictures{128, 8, {4, false}};
     const Vec3 ours = mean(prepared, pictures), theirs = mean(prepared, traversal, pictures);
     for (int axis = 0; axis < 3; ++axis) CHECK(ours[axis] == Approx(theirs[axis]).epsilon(1e-4));

@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "test_meshes.hpp"
-#include "tracer/simt/ray_box.hpp"
+#include "tracer/bvh/layouts/bvh2_node.hpp"
+#include "tracer/bvh/ray_box.hpp"
 
 using namespace raycache::tracer;
 using namespace raycache::tracer::test;

@@ -5,15 +5,16 @@
 
 #include "exact_judge.hpp"
 #include "test_rays.hpp"
+#include "tracer/bvh/ray_triangle.hpp"
 
 using namespace raycache::tracer;
 using namespace raycache::tracer::test;
 
 namespace {
 
-Bvh2Triangle triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t index = 0) { return {a, index, b, 0, c, 0}; }
+LeafTriangle triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t index = 0) { return {a, index, b, 0, c, 0}; }
 
-Hit hit_of(const Bvh2Triangle& t, const Ray& ray) {
+Hit hit_of(const LeafTriangle& t, const Ray& ray) {
     ShearedRay prepared;
     prepared.set(ray);
     Hit hit;
@@ -29,7 +30,7 @@ Ray along(Vec3 origin, Vec3 direction) {
     return ray;
 }
 
-const Bvh2Triangle right_angle = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+const LeafTriangle right_angle = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
 
 /// Rays from points well inside a sphere of the given place and size, at its vertices, edges and anywhere: how many get
 /// out?
@@ -83,7 +84,7 @@ TEST_CASE("triangle test: all 60 directions of signs and zeros hit a facing tria
         if (d == Vec3{}) continue;
         const Vec3 n = normalize(d), side = normalize(cross(n, std::fabs(n.x) < 0.5F ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
         const Vec3 up = cross(n, side);
-        const Bvh2Triangle facing = triangle(side * 2 - up, up * 2, side * -2 - up);
+        const LeafTriangle facing = triangle(side * 2 - up, up * 2, side * -2 - up);
         for (const float scale : {1.0F, 1e-6F, 1e6F}) {
             const Hit hit = hit_of(facing, along(d * -3, d * scale));
             INFO(d.x << ' ' << d.y << ' ' << d.z << " x " << scale);
@@ -160,7 +161,7 @@ TEST_CASE("triangle test: at equal distance the lower index wins, whatever the o
     const Ray ray = along({0.25F, 0.25F, 1}, {0, 0, -1});
     ShearedRay prepared;
     prepared.set(ray);
-    const Bvh2Triangle low = triangle(right_angle.v0, right_angle.v1, right_angle.v2, 3),
+    const LeafTriangle low = triangle(right_angle.v0, right_angle.v1, right_angle.v2, 3),
                        high = triangle(right_angle.v0, right_angle.v1, right_angle.v2, 8);
     for (const auto& [first, second] : {std::pair{low, high}, std::pair{high, low}}) {
         Hit hit;

@@ -6,9 +6,10 @@
 #include <bit>
 #include <vector>
 
+#include "test_rays.hpp"
+#include "tracer/bvh/ray_box.hpp"
+#include "tracer/bvh/ray_triangle.hpp"
 #include "tracer/prepared_scene.hpp"
-#include "tracer/simt/ray_box.hpp"
-#include "tracer/simt/ray_triangle.hpp"
 
 namespace raycache::tracer::test {
 
@@ -33,8 +34,8 @@ private:
     void walk(std::uint32_t ref) {
         if (done_) return;
         if (ChildRef::is_leaf(ref)) return walk_leaf(ref);
-        visits.push_back({node_region, ref});
-        const Bvh2Node& node = scene_.bvh().nodes[ref];
+        visits.push_back({Bvh2::node_region, ref});
+        const Bvh2Node& node = bvh2_of(scene_).nodes[ref];
         const BoxHits& boxes = test_boxes(node, box_);
         const bool hit0 = boxes.child(0), hit1 = boxes.child(1);
         const unsigned near = boxes.near_shift / 32;
@@ -48,9 +49,9 @@ private:
     void walk_leaf(std::uint32_t ref) {
         for (std::uint32_t k = 0; k < ChildRef::count(ref) && !done_; ++k) {
             const std::uint32_t index = ChildRef::first(ref) + k;
-            visits.push_back({triangle_region, index});
+            visits.push_back({Bvh2::triangle_region, index});
             Hit candidate = hit;
-            const Bvh2Triangle& triangle = scene_.bvh().triangles[index];
+            const LeafTriangle& triangle = bvh2_of(scene_).triangles[index];
             if (test_triangle(triangle, sheared_, candidate) && solid(candidate)) {
                 hit = candidate;
                 box_.set_t_max(hit.t);
@@ -67,7 +68,7 @@ private:
         if (material.base_color_texture >= 0) {
             const auto texel = scene_.texels().fetch(material.base_color_texture,
                                                      texcoord_at(scene, candidate.triangle, candidate.u, candidate.v));
-            visits.push_back({texel_region, texel.element});
+            visits.push_back({Bvh2::region_count, texel.element});
             alpha *= texel.alpha;
         }
         return alpha >= material.alpha_cutoff;
@@ -104,13 +105,13 @@ inline traces::WarpTrace lock_step(const std::vector<LoneRay>& lanes, std::uint3
         return stay;
     };
     for (;;) {
-        while (const std::uint32_t at_nodes = standing_at(mask, node_region)) step(at_nodes, node_region);
-        std::uint32_t in_leaf = standing_at(mask, triangle_region);
+        while (const std::uint32_t at_nodes = standing_at(mask, Bvh2::node_region)) step(at_nodes, Bvh2::node_region);
+        std::uint32_t in_leaf = standing_at(mask, Bvh2::triangle_region);
         if (in_leaf == 0) return trace;
         while (in_leaf != 0) {
-            std::uint32_t stay = step(in_leaf, triangle_region);
-            const std::uint32_t at_texels = standing_at(stay, texel_region);
-            if (at_texels != 0) stay = (stay & ~at_texels) | step(at_texels, texel_region);
+            std::uint32_t stay = step(in_leaf, Bvh2::triangle_region);
+            const std::uint32_t at_texels = standing_at(stay, Bvh2::region_count);
+            if (at_texels != 0) stay = (stay & ~at_texels) | step(at_texels, Bvh2::region_count);
             in_leaf = stay;
         }
     }

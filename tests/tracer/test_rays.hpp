@@ -8,15 +8,20 @@
 #include <vector>
 
 #include "test_meshes.hpp"
+#include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/prepared_scene.hpp"
+#include "tracer/simt/make_traversal.hpp"
 #include "tracer/simt/recorder.hpp"
-#include "tracer/simt/warp_traversal.hpp"
 
 namespace raycache::tracer::test {
 
+/// Of a scene in layout bvh2, or in one that differs from it in its order alone.
+inline const Bvh2& bvh2_of(const PreparedScene& scene) { return dynamic_cast<const Bvh2&>(scene.bvh()); }
+
 /// A 4x4 texture whose alpha is 0 or 255 in a chessboard, on some of the triangles; and one constant material below,
 /// one above the cutoff, one textured without holes.
-inline PreparedScene with_holes(Scene scene, const BvhSettings& settings = {}) {
+inline PreparedScene with_holes(Scene scene, const BvhSettings& settings = {},
+                                const std::string& layout = default_layout) {
     Texture texture{4, 4, {}, "chessboard"};
     for (std::uint32_t i = 0; i < 16; ++i)
         for (const int byte : {200, 100, 50, (i + i / 4) % 2 == 0 ? 255 : 0})
@@ -31,7 +36,7 @@ inline PreparedScene with_holes(Scene scene, const BvhSettings& settings = {}) {
     for (auto& m : scene.material_of) m = static_cast<std::uint16_t>(random.below(5));
     for (std::size_t i = 0; i < scene.positions.size(); ++i)
         scene.texcoords.push_back({random.between(-2, 2), random.between(-2, 2)});
-    return PreparedScene(std::move(scene), settings);
+    return PreparedScene(std::move(scene), settings, layout);
 }
 
 /// Calls body(mask, rays of the warp, index of lane 0) for one warp after another.
@@ -46,10 +51,10 @@ void for_each_warp(std::span<const Ray> rays, Body body) {
 
 inline std::vector<Hit> closest_hits(const PreparedScene& scene, std::span<const Ray> rays) {
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    const auto traversal = make_traversal(scene, recorder);
     std::vector<Hit> hits(rays.size() + traces::warp_lanes);
     for_each_warp(rays, [&](std::uint32_t mask, const Ray* warp, std::size_t first) {
-        traversal.closest(mask, traces::RayType::camera, 0, warp, &hits[first]);
+        traversal->closest(mask, traces::RayType::camera, 0, warp, &hits[first]);
     });
     hits.resize(rays.size());
     return hits;
@@ -57,10 +62,10 @@ inline std::vector<Hit> closest_hits(const PreparedScene& scene, std::span<const
 
 inline std::vector<bool> any_hits(const PreparedScene& scene, std::span<const Ray> rays) {
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    const auto traversal = make_traversal(scene, recorder);
     std::vector<bool> hits(rays.size());
     for_each_warp(rays, [&](std::uint32_t mask, const Ray* warp, std::size_t first) {
-        const std::uint32_t occluded = traversal.occluded(mask, traces::RayType::shadow, 0, warp);
+        const std::uint32_t occluded = traversal->occluded(mask, traces::RayType::shadow, 0, warp);
         for (unsigned lane = 0; lane < 32 && first + lane < rays.size(); ++lane)
             hits[first + lane] = ((occluded >> lane) & 1U) != 0;
     });

@@ -24,7 +24,7 @@ Hit brute_force(const PreparedScene& scene, const Ray& ray) {
     prepared.set(ray);
     Hit hit;
     hit.t = ray.t_max;
-    for (const Bvh2Triangle& t : scene.bvh().triangles) test_triangle(t, prepared, hit);
+    for (const LeafTriangle& t : bvh2_of(scene).triangles) test_triangle(t, prepared, hit);
     return hit;
 }
 
@@ -36,12 +36,12 @@ struct Recorded {
 
 Recorded record(const PreparedScene& scene, std::uint32_t mask, const Ray* rays, bool any_hit) {
     WarpRecorder recorder;
-    WarpTraversal<WarpRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
+    const auto traversal = make_traversal(scene, recorder);
     Recorded out;
     if (any_hit)
-        out.occluded = traversal.occluded(mask, RayType::shadow, 3, rays);
+        out.occluded = traversal->occluded(mask, RayType::shadow, 3, rays);
     else
-        traversal.closest(mask, RayType::bounce, 2, rays, out.hits.data());
+        traversal->closest(mask, RayType::bounce, 2, rays, out.hits.data());
     recorder.store(out.trace);
     return out;
 }
@@ -148,7 +148,7 @@ TEST_CASE("warp traversal: records are those of lone rays laid side by side in l
                     if (((mask >> l) & 1U) != 0)
                         differ += any_hit ? (((got.occluded >> l) & 1U) != 0) != lanes[l].hit.found()
                                           : !equal(got.hits[l], lanes[l].hit);
-                for (const Record& r : got.trace.records) texels += r.is_access() && r.region == texel_region;
+                for (const Record& r : got.trace.records) texels += r.is_access() && r.region == Bvh2::region_count;
             }
             CHECK(differ == 0);
             CHECK((texels > 0) == (scene != &plain));
@@ -164,7 +164,7 @@ TEST_CASE("warp traversal: a trace begins with a ray start and the root, and hol
             const auto& records = got.trace.records;
             REQUIRE(records.size() >= 2);
             REQUIRE(records[0] == Record{mask, raycache::traces::ray_start, RayType::bounce, 2, 0});
-            REQUIRE(records[1] == Record{mask, node_region, RayType::bounce, 2, 0});
+            REQUIRE(records[1] == Record{mask, Bvh2::node_region, RayType::bounce, 2, 0});
             std::size_t elements = 0;
             for (const Record& r : records) {
                 REQUIRE(r.mask != 0);
@@ -215,7 +215,7 @@ TEST_CASE("warp traversal: holes let rays through to what is behind, for closest
         CHECK(shadow.occluded == (solid ? 1U : 0U));
         for (const Recorded& got : {closest, shadow})
             CHECK(std::count_if(got.trace.records.begin(), got.trace.records.end(),
-                                [](const Record& r) { return r.is_access() && r.region == texel_region; }) == 1);
+                                [](const Record& r) { return r.is_access() && r.region == Bvh2::region_count; }) == 1);
     }
 }
 
@@ -231,7 +231,7 @@ TEST_CASE("warp traversal: a constant alpha decides without a texel read, below 
         const Recorded closest = record(scene, 1, &ray, false);
         CHECK(closest.hits[0].found() == (alpha >= 0.5F));
         CHECK(record(scene, 1, &ray, true).occluded == (alpha >= 0.5F ? 1U : 0U));
-        for (const Record& r : closest.trace.records) CHECK(r.region != texel_region);
+        for (const Record& r : closest.trace.records) CHECK(r.region != Bvh2::region_count);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "test_rays.hpp"
 #include "tests/traces/files.hpp"
 #include "tracer/capture.hpp"
+#include "tracer/paths/integrators/path_integrator.hpp"
 #include "tracer/simt/recorder.hpp"
 #include "tracer/simt/warp_traversal.hpp"
 #include "tracer/simt/wavefront.hpp"
@@ -92,10 +93,9 @@ std::vector<std::uint32_t> elements_of(const Capture& capture, const std::vector
 std::vector<Vec3> megakernel_picture(const Capture& capture) {
     const PreparedScene& scene = capture.scene();
     NullRecorder recorder;
-    WarpTraversal<NullRecorder> traversal(scene.scene(), scene.bvh(), scene.texels(), recorder);
-    PathIntegrator<WarpTraversal<NullRecorder>> integrator(scene.scene(), capture.camera(), scene.lights(),
-                                                           scene.texels(), capture.strategy(), capture.settings().paths,
-                                                           traversal);
+    const auto traversal = make_traversal(scene, recorder);
+    PathIntegrator integrator({scene.scene(), capture.camera(), scene.lights(), scene.texels(), capture.strategy(),
+                               capture.settings().paths, *traversal});
     std::vector<Vec3> pixels(std::size_t{40} * 24);
     for (std::uint32_t warp = 0; warp < capture.header().warps_per_launch; ++warp) {
         std::array<PathLane, traces::warp_lanes> lanes;
@@ -131,16 +131,16 @@ std::vector<Vec3> wavefront_picture(const Capture& capture) {
 }  // namespace
 
 TEST_CASE("wavefront: kernels come by vertex: sort, extend, shade, connect") {
-    CHECK(wavefront_kernels(0, true, true) ==
+    CHECK(wavefront_kernels({0, true}, true) ==
           std::vector<WavefrontKernel>{{Stage::extend, 0}, {Stage::shade, 0}, {Stage::connect, 0}});
-    CHECK(wavefront_kernels(1, true, true) == std::vector<WavefrontKernel>{{Stage::extend, 0},
-                                                                           {Stage::shade, 0},
-                                                                           {Stage::connect, 0},
-                                                                           {Stage::sort, 1},
-                                                                           {Stage::extend, 1},
-                                                                           {Stage::shade, 1},
-                                                                           {Stage::connect, 1}});
-    CHECK(wavefront_kernels(1, false, false) ==
+    CHECK(wavefront_kernels({1, true}, true) == std::vector<WavefrontKernel>{{Stage::extend, 0},
+                                                                             {Stage::shade, 0},
+                                                                             {Stage::connect, 0},
+                                                                             {Stage::sort, 1},
+                                                                             {Stage::extend, 1},
+                                                                             {Stage::shade, 1},
+                                                                             {Stage::connect, 1}});
+    CHECK(wavefront_kernels({1, false}, false) ==
           std::vector<WavefrontKernel>{{Stage::extend, 0}, {Stage::shade, 0}, {Stage::extend, 1}, {Stage::shade, 1}});
 }
 

@@ -12,6 +12,7 @@
 #include "tools/bench/workload.hpp"
 #include "tracer/bvh/embree_scene.hpp"
 #include "tracer/paths/embree_traversal.hpp"
+#include "tracer/paths/integrators/path_integrator.hpp"
 
 namespace raycache::bench {
 namespace {
@@ -24,18 +25,18 @@ struct LoggedRay {
 };
 
 /// Lets the integrator run over Embree and keeps the rays it asked for.
-class RayLogger {
+class RayLogger final : public Traversal {
 public:
     RayLogger(const EmbreeScene& embree, std::vector<LoggedRay>& log) : embree_(embree), log_(log) {}
 
-    void closest(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays, Hit* hits) {
+    void closest(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays, Hit* hits) override {
         for (; mask != 0; mask &= mask - 1) {
             const int l = std::countr_zero(mask);
             hits[l] = embree_.intersect(rays[l]);
             log_.push_back({rays[l], false});
         }
     }
-    std::uint32_t occluded(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays) {
+    std::uint32_t occluded(std::uint32_t mask, traces::RayType, std::uint8_t, const Ray* rays) override {
         std::uint32_t blocked = 0;
         for (; mask != 0; mask &= mask - 1) {
             const int l = std::countr_zero(mask);
@@ -44,7 +45,7 @@ public:
         }
         return blocked;
     }
-    void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) {}
+    void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) override {}
 
 private:
     const EmbreeScene& embree_;
@@ -52,10 +53,9 @@ private:
 };
 
 /// Traces the first launch by `traversal`.
-template <class Traversal>
 void trace_launch(const Capture& capture, Traversal& traversal) {
-    PathIntegrator<Traversal> integrator(scene().scene(), capture.camera(), scene().lights(), scene().texels(),
-                                         capture.strategy(), capture.settings().paths, traversal);
+    PathIntegrator integrator({scene().scene(), capture.camera(), scene().lights(), scene().texels(),
+                               capture.strategy(), capture.settings().paths, traversal});
     std::array<PathLane, traces::warp_lanes> jobs;
     std::array<Vec3, traces::warp_lanes> radiance;
     for (std::uint32_t warp = 0; warp < capture.header().warps_per_launch; ++warp)

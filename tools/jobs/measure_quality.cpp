@@ -19,7 +19,7 @@
 namespace raycache::tools {
 namespace {
 
-std::uint32_t dimensions_of(const tracer::CaptureSettings& s) { return tracer::path_dimensions(s.paths.bounces); }
+std::uint32_t dimensions_of(const tracer::CaptureSettings& s) { return tracer::sample_dimensions(s.paths); }
 
 tracer::RenderSettings render_settings(const tracer::CaptureSettings& s, std::optional<float> clamp) {
     return {s.width, s.height, s.paths, s.strategy, clamp};

@@ -28,10 +28,12 @@ struct EnumNames<tracer::LightSampling> {
 template <>
 struct Fields<tracer::PathSettings> {
     using S = tracer::PathSettings;
-    static constexpr std::tuple all{Field{"bounces", &S::bounces}, Field{"russian_roulette", &S::russian_roulette},
+    static constexpr std::tuple all{Field{"bounces", &S::bounces},
+                                    Field{"russian_roulette", &S::russian_roulette},
                                     Field{"bounces_diffuse", &S::bounces_diffuse},
                                     Field{"bounces_transmission", &S::bounces_transmission},
-                                    Field{"lights", &S::lights}};
+                                    Field{"lights", &S::lights},
+                                    Field{"integrator", &S::integrator}};
 };
 
 template <>

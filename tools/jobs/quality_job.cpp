@@ -31,7 +31,7 @@ void check_reference(const QualityJob& job, const QualityRequest& request) {
                         job.reference_strategy, fmt::join(independent_strategies(), ", ")));
     tracer::StrategySettings settings;
     settings.decorrelation = job.reference_strategy;
-    const tracer::SamplingStrategy valid(settings, tracer::path_dimensions(request.cases.front().paths.bounces));
+    const tracer::SamplingStrategy valid(settings, tracer::sample_dimensions(request.cases.front().paths));
 }
 
 }  // namespace

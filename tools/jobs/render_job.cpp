@@ -15,7 +15,7 @@ tracer::CaptureSettings RenderJob::capture() const {
     settings.paths = sampling.paths();
     settings.strategy = sampling.strategy(strategy.sequence, strategy.strategy, strategy.spp);
     tracer::check_clamp(clamp);
-    const tracer::SamplingStrategy check(settings.strategy, tracer::path_dimensions(settings.paths.bounces));
+    const tracer::SamplingStrategy check(settings.strategy, tracer::sample_dimensions(settings.paths));
     return settings;
 }
 

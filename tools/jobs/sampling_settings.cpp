@@ -38,6 +38,7 @@ std::string path_command(const SamplingSettings& sampling) {
     if (sampling.bounces_transmission)
         text += fmt::format(" --bounces-transmission {}", *sampling.bounces_transmission);
     if (sampling.lights != "auto") text += " --lights " + sampling.lights;
+    if (sampling.integrator != tracer::default_integrator) text += " --integrator " + sampling.integrator;
     if (sampling.russian_roulette) text += " --russian-roulette";
     return text;
 }
@@ -65,6 +66,7 @@ tracer::PathSettings SamplingSettings::paths() const {
     settings.bounces_diffuse = bounces_diffuse.value_or(settings.bounces_diffuse);
     settings.bounces_transmission = bounces_transmission.value_or(settings.bounces_transmission);
     settings.lights = tracer::light_sampling_from(lights);
+    settings.integrator = integrator;
     tracer::check(settings);
     return settings;
 }
@@ -104,12 +106,12 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     settings.execution.execution =
         suffix.empty() ? tracer::execution_from(sampling.execution) : tracer::Execution::wavefront;
     settings.execution.order = suffix.empty() ? sampling.order : suffix == "wavefront" ? "none" : suffix;
-    tracer::check_execution(settings.execution);
     const bool wavefront = settings.execution.execution == tracer::Execution::wavefront;
     const Resolution size = parse_resolution(sampling.resolution);
     settings.width = size.width;
     settings.height = size.height;
     settings.paths = sampling.paths();
+    tracer::check_execution(settings.execution, tracer::integrator_entry(settings.paths.integrator));
     settings.strategy = sampling.strategy(one.sequence, decorrelation, one.spp);
     settings.trace_samples = sampling.trace_samples;
     const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
@@ -137,7 +139,7 @@ void warn_of_strategies(const std::vector<tracer::CaptureSettings>& cases, Obser
     for (const tracer::CaptureSettings& c : cases) {
         tracer::StrategySettings strategy = c.strategy;
         strategy.parameters.width = c.width;
-        const tracer::SamplingStrategy made(strategy, tracer::path_dimensions(c.paths.bounces));
+        const tracer::SamplingStrategy made(strategy, tracer::sample_dimensions(c.paths));
         for (const std::string& line : made.warnings()) {
             if (std::find(said.begin(), said.end(), line) != said.end()) continue;
             said.push_back(line);

@@ -18,6 +18,7 @@ struct SamplingSettings {
     std::optional<std::uint32_t> bounces_diffuse, bounces_transmission;  ///< absent: all
     std::string lights = "auto";                                         ///< auto, bsdf, nee, mis
     bool russian_roulette = false;
+    std::string integrator = tracer::default_integrator;  ///< a name of integrators()
 
     std::string k = "2.5";  ///< or "discrepancy"
     std::string s = "2";    ///< or "full"

@@ -38,7 +38,8 @@ tracer::SceneRequest::Sky parse_sky(const std::string& text) {
 }  // namespace
 
 std::unique_ptr<tracer::PreparedScene> SceneSettings::prepare(const FileNames& outputs, Observer& observer) const {
-    if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);  // before anything takes time
+    tracer::bvh_layout_entry(layout);  // before anything takes time
+    if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(source, unknown);
     constexpr std::uint64_t usual_triangles = 300000;
@@ -57,7 +58,7 @@ std::unique_ptr<tracer::PreparedScene> SceneSettings::prepare(const FileNames& o
     bvh.spatial_splits = spatial_splits;
     tracer::Scene scene = tracer::load_scene(request, observer.warning());
     refuse_overwriting(scene.files, outputs);
-    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh);
+    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh, layout);
 }
 
 std::string SceneSettings::command() const {
@@ -69,6 +70,7 @@ std::string SceneSettings::command() const {
     if (fov != 0) text += fmt::format(" --fov {}", fov);
     text += " --sky " + sky;
     if (spatial_splits) text += " --spatial-splits";
+    if (layout != tracer::default_layout) text += " --layout " + layout;
     return text;
 }
 

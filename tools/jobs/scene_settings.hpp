@@ -20,6 +20,7 @@ struct SceneSettings {
     float fov = 0;                ///< vertical field of view in degrees; 0: the camera's
     std::string sky = "auto";     ///< constant sky and a sun: auto (where the scene has no light), on, off
     bool spatial_splits = false;  ///< build the BVH with spatial splits
+    std::string layout = tracer::default_layout;  ///< of the BVH in memory: a name of bvh_layouts()
 
     /// Loads the scene and builds everything on it. Throws UsageError for settings that are none, and if one of
     /// `outputs`, which the caller is going to write, is a file that the scene is read from; else as load_scene().

@@ -12,7 +12,8 @@ struct Fields<SceneSettings> {
     static constexpr std::tuple all{Field{"source", &S::source},   Field{"detail", &S::detail},
                                     Field{"camera", &S::camera},   Field{"eye", &S::eye},
                                     Field{"look_at", &S::look_at}, Field{"fov", &S::fov},
-                                    Field{"sky", &S::sky},         Field{"spatial_splits", &S::spatial_splits}};
+                                    Field{"sky", &S::sky},         Field{"spatial_splits", &S::spatial_splits},
+                                    Field{"layout", &S::layout}};
 };
 
 template <>
@@ -24,6 +25,7 @@ struct Fields<SamplingSettings> {
                                     Field{"bounces_transmission", &S::bounces_transmission},
                                     Field{"lights", &S::lights},
                                     Field{"russian_roulette", &S::russian_roulette},
+                                    Field{"integrator", &S::integrator},
                                     Field{"k", &S::k},
                                     Field{"s", &S::s},
                                     Field{"mu", &S::mu},

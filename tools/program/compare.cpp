@@ -38,8 +38,7 @@ std::vector<CaseSettings> cases_of(const Options& o) {
                 for (const std::string& k : o.ks) {
                     const CaseSettings one{strategy, sequence, spp, k, {}};
                     const auto settings = capture_settings(o.scene, o.sampling, one);
-                    const tracer::SamplingStrategy made(settings.strategy,
-                                                        tracer::path_dimensions(settings.paths.bounces));
+                    const tracer::SamplingStrategy made(settings.strategy, tracer::sample_dimensions(settings.paths));
                     if (o.ks.size() == 1 ||
                         seen.insert(fmt::format("{} {} {} {}", sequence, spp, strategy, made.parameters())).second)
                         all.push_back(one);

@@ -122,6 +122,7 @@ const std::vector<OptionRule>& rules() {
         {"--trace-samples", trace_samples_rule},
         {"--thread-map", launches_rule},
         {"--spatial-splits", launches_rule},
+        {"--layout", launches_rule},
         {"--set", launches_rule},
         {"--warps-per-sm", launches_rule},
         {"--bounces-diffuse", [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_diffuse, c); }},

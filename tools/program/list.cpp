@@ -13,6 +13,8 @@
 #include "tools/program/json_output.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/width_option.hpp"
+#include "tracer/bvh/layouts/layout.hpp"
+#include "tracer/paths/integrators/integrator.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
@@ -42,8 +44,8 @@ std::vector<Topic> all_topics() {
     return {{"strategies", entries_of(tracer::decorrelations())},
             {"sequences", entries_of(tracer::sequences())},
             {"gpus", entries_of(cachesim::gpu_presets())},
-            {"layouts",
-             {{"bvh2", "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)"}}},
+            {"layouts", entries_of(tracer::bvh_layouts())},
+            {"integrators", entries_of(tracer::integrators())},
             {"thread-maps",
              {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
               {"samples", "a warp = one pixel, 32 consecutive sample indices"},
@@ -97,12 +99,12 @@ void run(const Options& o) {
 void add_list(Program& program) {
     auto o = std::make_shared<Options>();
     Command* command = program.add_subcommand(
-        "list", "List strategies, sequences, GPUs, layouts, thread maps, ray orders, built-in scenes");
+        "list", "List strategies, sequences, GPUs, layouts, integrators, thread maps, ray orders, built-in scenes");
     std::vector<std::string> topics;
     for (const Topic& topic : all_topics()) topics.push_back(topic.name);
     command
         ->add_option("TOPIC", o->topic,
-                     "strategies, sequences, gpus, layouts, thread-maps, orders or scenes; default: all")
+                     "strategies, sequences, gpus, layouts, integrators, thread-maps, orders or scenes; default: all")
         ->choices("topic", topics);
     o->json.add(*command);
     o->width.add(*command);

@@ -94,6 +94,8 @@ void SceneOptions::add_view(Command& command) {
         ->choices("sky", {"auto", "on", "off"})
         ->type_name("WHEN");
     command.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
+    command.add_option("--layout", layout, "how the BVH lies in memory (see 'raycache list layouts')")
+        ->choices("layout", names_of(tracer::bvh_layouts()));
     command.group("");
 }
 
@@ -115,6 +117,10 @@ void SamplingOptions::add_picture(Command& command) {
                     "(shadow rays), mis (both, weighted)")
         ->choices("way to find lights", {"auto", "bsdf", "nee", "mis"})
         ->type_name("HOW");
+    command
+        .add_option("--integrator", integrator,
+                    "what is computed along the rays of a pixel (see 'raycache list integrators')")
+        ->choices("integrator", names_of(tracer::integrators()));
     command.add_flag("--russian-roulette", russian_roulette,
                      "end dim paths early at random; breaks lock-step comparisons");
     command.group("");

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "tracer/paths/integrators/integrator.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -34,6 +35,7 @@ void check(const PathSettings& settings) {
     limit(settings.bounces, "--bounces");
     limit(settings.bounces_diffuse, "--bounces-diffuse");
     limit(settings.bounces_transmission, "--bounces-transmission");
+    integrator_entry(settings.integrator);
 }
 
 }  // namespace raycache::tracer

@@ -20,6 +20,8 @@ enum class LightSampling {
 LightSampling light_sampling_from(const std::string& name);
 std::string to_string(LightSampling);
 
+inline constexpr const char* default_integrator = "path";
+
 struct PathSettings {
     std::uint32_t bounces = 3;  ///< bounce rays of a path, 0 … 64
     /// Paths end early at random from the third vertex on, by throughput. Off for comparisons: it breaks lock step.
@@ -28,12 +30,10 @@ struct PathSettings {
     /// inside a solid. A path ends where the kind it draws is used up.
     std::uint32_t bounces_diffuse = max_bounces, bounces_transmission = max_bounces;
     LightSampling lights = LightSampling::automatic;
+    std::string integrator = default_integrator;  ///< a name of integrators()
 };
 
-/// Throws UsageError for more than `max_bounces` of any kind.
+/// Throws UsageError for more than `max_bounces` of any kind, and for an unknown integrator.
 void check(const PathSettings&);
-
-/// Sample dimensions that a path of `bounces` bounces needs: see PathIntegrator.
-inline std::uint32_t path_dimensions(std::uint32_t bounces) { return 2 + 5 * (bounces + 1); }
 
 }  // namespace raycache::tracer

@@ -44,7 +44,7 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     const Scene& scene = prepared.scene();
     const Camera& camera = prepared.camera();
     // A field that is not part of the key would let one picture stand for another.
-    static_assert(sizeof(PathSettings) == 20, "put the new field of PathSettings into the key below");
+    const auto& [bounces, roulette, reflections, transmissions, lights, integrator] = settings.paths;
     static_assert(sizeof(Sun) == 28, "put the new field of Sun into the key below");
     std::string key = fmt::format(
         "raycache reference 3; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
@@ -52,13 +52,12 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
         "{} bounces, {} reflections, {} transmissions, lights {}{}; {} {}, {} samples per pixel, blocks of {}, seed "
         "{:x}",
         scene.hash, scene.triangle_count(), text(scene.sky), text(camera.eye), text(camera.forward), text(camera.up),
-        camera.vertical_fov, settings.width, settings.height, settings.paths.bounces, settings.paths.bounces_diffuse,
-        settings.paths.bounces_transmission, to_string(settings.paths.lights),
-        settings.paths.russian_roulette ? ", roulette" : "", settings.decorrelation, settings.sequence, settings.spp,
-        block, first_seed);
+        camera.vertical_fov, settings.width, settings.height, bounces, reflections, transmissions, to_string(lights),
+        roulette ? ", roulette" : "", settings.decorrelation, settings.sequence, settings.spp, block, first_seed);
     if (scene.sun)
         key += fmt::format("; sun {} irradiance {} radius {}", text(scene.sun->direction), text(scene.sun->irradiance),
                            scene.sun->angular_radius);
+    if (integrator != default_integrator) key += fmt::format("; integrator {}", integrator);
     if (settings.clamp) key += fmt::format("; samples clamped to {}", *settings.clamp);
     return key;
 }

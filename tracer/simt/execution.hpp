@@ -7,6 +7,8 @@
 
 namespace raycache::tracer {
 
+struct IntegratorEntry;
+
 enum class Execution { megakernel, wavefront };
 
 /// Throws UsageError that lists the valid names.
@@ -18,7 +20,8 @@ struct ExecutionSettings {
     std::string order = "none";  ///< of the rays of a wavefront: a name of ray_orders()
 };
 
-/// Throws UsageError for an unknown order, and for an order of a megakernel's rays: they never meet.
-void check_execution(const ExecutionSettings&);
+/// Throws UsageError for an unknown order, for an order of a megakernel's rays, which never meet, and for a wavefront
+/// of an integrator that is not cut into stages.
+void check_execution(const ExecutionSettings&, const IntegratorEntry&);
 
 }  // namespace raycache::tracer

@@ -1,6 +1,7 @@
 // Where a warp's accesses go: into a WarpTrace, or nowhere.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -16,13 +17,14 @@ struct OpenRecord {
     std::uint8_t* symbol;
 };
 
-/// Renders need no trace; the calls compile to next to nothing.
+/// For rays that leave no trace; the calls compile to next to nothing.
 class NullRecorder {
 public:
     void kind(traces::RayType, std::uint8_t) {}
     std::uint32_t start_rays(std::uint32_t, std::uint8_t) { return 0; }
     OpenRecord open(std::uint32_t, std::uint8_t) { return {unread_, unread_symbols_}; }
     void close(const OpenRecord&) {}
+    void repeat(std::uint32_t, std::uint8_t) {}
     std::uint32_t place(const std::uint8_t*) const { return 0; }
     void set_symbol(std::uint32_t, std::uint8_t) {}
 
@@ -62,6 +64,15 @@ public:
     void close(const OpenRecord& end) {
         used_elements_ = static_cast<std::size_t>(end.element - elements_.data());
         used_symbols_ = static_cast<std::size_t>(end.symbol - symbols_.data());
+    }
+
+    /// The lanes of the access closed last read the same elements of another region.
+    void repeat(std::uint32_t mask, std::uint8_t region) {
+        const OpenRecord out = open(mask, region);
+        const unsigned lanes = records_.back().lanes();
+        std::copy_n(out.element - lanes, lanes, out.element);
+        std::fill_n(out.symbol, lanes, traces::symbol::end_of_ray);
+        close({out.element + lanes, out.symbol + lanes});
     }
 
     /// A symbol is often known only when the lane goes on: names the place of a symbol, as long as clear() is not

@@ -1,23 +1,21 @@
 // What a thread needs to trace warps and record what they read.
 #pragma once
 
-#include "tracer/paths/path_integrator.hpp"
+#include <memory>
+
+#include "tracer/paths/integrators/integrator.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/simt/recorder.hpp"
-#include "tracer/simt/warp_traversal.hpp"
 
 namespace raycache::tracer {
 
 struct RecordingWorker {
-    RecordingWorker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy,
-                    const PathSettings& paths)
-        : traversal(scene.scene(), scene.bvh(), scene.texels(), recorder),
-          integrator(scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal) {}
+    RecordingWorker(const PreparedScene&, const CameraRays&, const SamplingStrategy&, const PathSettings&);
     RecordingWorker(const RecordingWorker&) = delete;  // its parts point at each other
 
     WarpRecorder recorder;
-    WarpTraversal<WarpRecorder> traversal;
-    PathIntegrator<WarpTraversal<WarpRecorder>> integrator;
+    std::unique_ptr<Traversal> traversal;
+    std::unique_ptr<Integrator> integrator;
     PathLanes lanes;  ///< scratch of a wavefront's warp
 };
 

@@ -1,70 +1,58 @@
-// 32 rays walk a bvh2 together, as the lanes of a warp do: "while-while" of Aila & Laine 2009. The warp repeats
-//   1. while a lane stands at an inner node: all such lanes visit their node (one warp access) and step to the nearer
-//   child hit, or
-//      pop; lanes that arrive at a leaf wait;
-//   2. while a waiting lane has an untested triangle: all such lanes test their next one (one warp access); then they
-//   pop.
-// Popped entries are not culled by distance: like the kernels this models, the stack holds no distances.
+// 32 rays walk a BVH together, as the lanes of a warp do: "while-while" of Aila & Laine 2009. The warp repeats
+//   1. while a lane stands at a node: all such lanes visit their node and step; lanes that arrive at triangles wait;
+//   2. while a waiting lane has an untested triangle: all such lanes test their next one; then they step.
+// What a visit reads and where a step leads is the layout's (tracer/bvh/layouts/layout.hpp).
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "tracer/bvh/layouts/bvh2.hpp"
+#include "tracer/bvh/layouts/layout.hpp"
+#include "tracer/bvh/ray_triangle.hpp"
+#include "tracer/paths/traversal.hpp"
 #include "tracer/ray.hpp"
 #include "tracer/scene/cutout.hpp"
-#include "tracer/simt/ray_box.hpp"
-#include "tracer/simt/ray_triangle.hpp"
 #include "tracer/simt/recorder.hpp"
 
 namespace raycache::tracer {
 
-/// `Recorder` is WarpRecorder to write a trace, NullRecorder to render.
-template <class Recorder>
-class WarpTraversal {
+/// `Recorder` is WarpRecorder to write a trace, NullRecorder to walk alone.
+template <WalkableBvh Tree, class Recorder>
+class WarpTraversal final : public Traversal {
 public:
     static constexpr unsigned lanes = traces::warp_lanes;
+    /// Of textures: behind those of the layout.
+    static constexpr std::uint8_t texel_region = Tree::region_count;
 
-    WarpTraversal(const Scene& scene, const Bvh2& bvh, const TexelLayout& texels, Recorder& recorder)
-        : scene_(&scene), bvh_(&bvh), texels_(&texels), recorder_(&recorder), stack_(std::size_t{lanes} * stride()) {}
+    WarpTraversal(const Scene& scene, const Tree& tree, const TexelLayout& texels, Recorder& recorder)
+        : scene_(&scene),
+          tree_(&tree),
+          texels_(&texels),
+          recorder_(&recorder),
+          stack_(std::size_t{lanes} * tree.stack_entries()) {}
 
-    /// Nearest hit of each lane in `mask`. Texels with alpha below the cutoff are holes.
-    void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) {
+    void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) override {
         begin(mask, type, bounce, rays, hits);
         run<false>(hits);
     }
 
-    /// Lanes whose ray meets anything in (t_min, t_max]: a lane stops at its first hit.
-    std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) {
+    /// A lane stops at its first hit.
+    std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) override {
         Hit hits[lanes];
         begin(mask, type, bounce, rays, hits);
         return run<true>(hits);
     }
 
-    /// The lanes of `mask` each read one texel for shading; lane l reads `elements[l]`.
-    void read_texels(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const std::uint32_t* elements) {
+    void read_texels(std::uint32_t mask, traces::RayType type, std::uint8_t bounce,
+                     const std::uint32_t* elements) override {
         recorder_->kind(type, bounce);
         record_texels(mask, 0, elements);
     }
 
 private:
-    /// One entry that is never read, the sentinel, the entries.
-    std::size_t stride() const { return bvh_->stack_entries + 2; }
-
-    struct StackEntry {
-        std::uint32_t height;  ///< Lane::height below this sibling
-        std::uint32_t ref;
-    };
-
     /// One lane's place in the tree. The hot loop touches little else.
-    struct alignas(64) Lane {
-        BoxRay box;
-        StackEntry* top;        ///< the topmost stack entry; popping the sentinel `nothing` ends the lane
-        std::uint32_t current;  ///< where the lane stands: a node, a leaf, or nothing
-        /// Siblings of the nodes on the way here that have not been visited, hit or not: the height of the stack that
-        /// the trace's symbols speak of.
-        std::uint32_t height;
+    struct alignas(64) Lane : Tree::Lane {
         std::uint32_t last_symbol = 0;  ///< its place; set wherever the lane may end
     };
 
@@ -75,11 +63,7 @@ private:
         leaf_mask_ = 0;
         for (std::uint32_t m = mask; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
-            lane_[l].box.set(rays[l]);
-            lane_[l].top = &stack_[l * stride() + 1];
-            *lane_[l].top = {0, ChildRef::nothing};
-            lane_[l].current = 0;
-            lane_[l].height = 0;
+            lane_[l].start(rays[l], &stack_[l * tree_->stack_entries()]);
             lane_[l].last_symbol = symbol++;
             sheared_[l].set(rays[l]);
             hits[l] = Hit{};
@@ -102,41 +86,33 @@ private:
         return lane_bit & (0U - static_cast<std::uint32_t>(condition));
     }
 
+    /// The accesses of a visit behind its first, to the same elements.
+    template <std::size_t n>
+    void read_more(std::uint32_t mask, const std::array<std::uint8_t, n>& regions) {
+        for (std::size_t i = 1; i < n; ++i) recorder_->repeat(mask, regions[i]);
+    }
+
     /// Which way a ray goes is what a branch predictor cannot know, so the body of the loop has none but for a lane's
     /// end.
     void visit_nodes() {
-        OpenRecord out = recorder_->open(node_mask_, node_region);
-        const Bvh2Node* nodes = bvh_->nodes.data();
+        OpenRecord out = recorder_->open(node_mask_, Tree::node_reads[0]);
+        const typename Tree::View view = tree_->view();
         std::uint32_t next_nodes = 0, ended = 0;
         for (std::uint32_t m = node_mask_; m != 0; m &= m - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(m));
             Lane& lane = lane_[l];
-            *out.element++ = lane.current;
-            const Bvh2Node& node = nodes[lane.current];
-            const BoxHits& hit = test_boxes(node, lane.box);
-            const std::uint64_t near_far =
-                std::rotr(std::bit_cast<std::uint64_t>(node.child), static_cast<int>(hit.near_shift));
-            StackEntry* top = lane.top;
-            const std::uint32_t pushed = lane.height + 1;
-            // Counts only if both are hit.
-            top[1] = std::bit_cast<StackEntry>((near_far & ~std::uint64_t{0xffffffff}) | lane.height);
-            top += hit.both;
-            const auto near = static_cast<std::uint32_t>(near_far);
-            const std::uint32_t ref = near ^ ((near ^ top->ref) & hit.none);
-            const std::uint32_t height = pushed ^ ((pushed ^ top->height) & hit.none);
-            // The child taken; or, if none is, how far to pop.
-            *out.symbol++ = static_cast<std::uint8_t>((hit.near_shift >> 5) + (pushed - height));
-            lane.top = top - (hit.none & 1U);
-            lane.current = ref;
-            lane.height = height;
-            next_nodes |= (~ref >> 31) << l;
-            if (ref == ChildRef::nothing) [[unlikely]] {
+            *out.element++ = lane.node();
+            const LaneStep step = lane.visit_node(view);
+            *out.symbol++ = static_cast<std::uint8_t>(step.symbol);
+            next_nodes |= step.at_node << l;
+            if (step.ended) [[unlikely]] {
                 ended |= 1U << l;
                 out.symbol[-1] = traces::symbol::end_of_ray;
                 lane.last_symbol = recorder_->place(out.symbol - 1);
             }
         }
         recorder_->close(out);
+        read_more(node_mask_, Tree::node_reads);
         leaf_mask_ |= node_mask_ & ~next_nodes & ~ended;
         node_mask_ = next_nodes;
     }
@@ -145,20 +121,20 @@ private:
     std::uint32_t visit_leaves(Hit* hits) {
         std::uint32_t occluded_lanes = 0;
         std::uint32_t waiting = leaf_mask_;
-        for (std::uint32_t k = 0; waiting != 0; ++k) {
+        while (waiting != 0) {
             std::uint32_t more = 0, holes = 0;
-            OpenRecord out = recorder_->open(waiting, triangle_region);
+            OpenRecord out = recorder_->open(waiting, Tree::triangle_reads[0]);
             std::uint32_t symbol = recorder_->place(out.symbol);
+            const typename Tree::View view = tree_->view();
             for (std::uint32_t m = waiting; m != 0; m &= m - 1) {
                 const auto l = static_cast<unsigned>(std::countr_zero(m));
                 const std::uint32_t bit = m & (0U - m);
-                const std::uint32_t leaf = lane_[l].current;
-                const std::uint32_t index = ChildRef::first(leaf) + k;
+                const std::uint32_t index = lane_[l].take_triangle();
                 *out.element++ = index;
                 *out.symbol++ = traces::symbol::sequential;
                 lane_[l].last_symbol = symbol++;
-                more |= bit_if(k + 1 < ChildRef::count(leaf), bit);
-                const Bvh2Triangle& triangle = bvh_->triangles[index];
+                more |= bit_if(lane_[l].more_triangles(), bit);
+                const auto& triangle = view.triangle(index);
                 candidate_[l] = hits[l];
                 if (!test_triangle(triangle, sheared_[l], candidate_[l])) continue;
                 if (triangle.alpha != 0)
@@ -167,21 +143,18 @@ private:
                     occluded_lanes |= accept(l, hits);
             }
             recorder_->close(out);
+            read_more(waiting, Tree::triangle_reads);
             if (holes != 0) occluded_lanes |= test_holes(holes, more, hits);
             waiting = any_hit ? more & ~occluded_lanes : more;
         }
         for (std::uint32_t m = leaf_mask_; m != 0; m &= m - 1) {
             Lane& lane = lane_[std::countr_zero(m)];
             const std::uint32_t bit = m & (0U - m);
-            const StackEntry popped =
-                any_hit && (occluded_lanes & bit) != 0 ? StackEntry{0, ChildRef::nothing} : *lane.top--;
-            const bool end = popped.ref == ChildRef::nothing;
-            recorder_->set_symbol(lane.last_symbol, end ? traces::symbol::end_of_ray
-                                                        : static_cast<std::uint8_t>(lane.height - popped.height - 1));
-            lane.current = popped.ref;
-            lane.height = popped.height;
-            node_mask_ |= bit_if(!ChildRef::is_leaf(lane.current), bit);
-            if (lane.current <= ChildRef::nothing) leaf_mask_ &= ~bit;
+            const LaneStep step = any_hit && (occluded_lanes & bit) != 0 ? lane.end() : lane.leave_triangles();
+            recorder_->set_symbol(lane.last_symbol,
+                                  step.ended ? traces::symbol::end_of_ray : static_cast<std::uint8_t>(step.symbol));
+            node_mask_ |= bit_if(step.at_node != 0, bit);
+            if (step.at_node != 0 || step.ended) leaf_mask_ &= ~bit;
         }
         return occluded_lanes;
     }
@@ -189,12 +162,12 @@ private:
     /// Makes the lane's candidate its hit; returns the lane's bit.
     std::uint32_t accept(unsigned l, Hit* hits) {
         hits[l] = candidate_[l];
-        lane_[l].box.set_t_max(hits[l].t);
+        lane_[l].shorten(hits[l].t);
         return 1U << l;
     }
 
     /// Candidates on materials that may have holes: reads their texels, accepts those that are solid. `more`: lanes
-    /// whose leaf has another triangle.
+    /// that have another triangle to test.
     std::uint32_t test_holes(std::uint32_t mask, std::uint32_t more, Hit* hits) {
         std::uint32_t elements[lanes];
         std::uint32_t textured = 0, solid = 0;
@@ -225,11 +198,11 @@ private:
     }
 
     const Scene* scene_;
-    const Bvh2* bvh_;
+    const Tree* tree_;
     const TexelLayout* texels_;
     Recorder* recorder_;
-    std::vector<StackEntry> stack_;
-    std::uint32_t node_mask_ = 0, leaf_mask_ = 0;  ///< lanes at inner nodes; lanes that wait at a leaf
+    std::vector<typename Tree::Lane::StackEntry> stack_;
+    std::uint32_t node_mask_ = 0, leaf_mask_ = 0;  ///< lanes at nodes; lanes that wait at triangles
     Lane lane_[lanes];
     ShearedRay sheared_[lanes];
     Hit candidate_[lanes];

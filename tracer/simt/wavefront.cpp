@@ -48,13 +48,13 @@ std::uint32_t rank(std::uint32_t mask, unsigned lane) {
 
 }  // namespace
 
-std::vector<WavefrontKernel> wavefront_kernels(std::uint32_t bounces, bool sorted, bool lit) {
+std::vector<WavefrontKernel> wavefront_kernels(const StagePlan& plan, bool sorted) {
     std::vector<WavefrontKernel> kernels;
-    for (std::uint32_t vertex = 0; vertex <= bounces; ++vertex) {
+    for (std::uint32_t vertex = 0; vertex <= plan.last_vertex; ++vertex) {
         if (sorted && vertex > 0) kernels.push_back({Stage::sort, vertex});
         kernels.push_back({Stage::extend, vertex});
         kernels.push_back({Stage::shade, vertex});
-        if (lit) kernels.push_back({Stage::connect, vertex});
+        if (plan.shadow_rays) kernels.push_back({Stage::connect, vertex});
     }
     return kernels;
 }
@@ -134,19 +134,20 @@ void Wavefront::trace_extend(RecordingWorker& worker, std::uint32_t warp, traces
     shaded = {};
     if (w.mask == 0) return;
     PathLanes& p = worker.lanes;
+    PathStages& path = *worker.integrator->stages();
     WarpRecorder& recorder = worker.recorder;
     for_each(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / lanes], w.slot[l] % lanes); });
 
     const auto slot = [&](unsigned l) { return w.slot[l]; };
     recorder.kind(type_of(vertex), bounce);
     if (vertex == 0) {
-        worker.integrator.generate(w.mask, p);
+        path.generate(w.mask, p);
     } else {
         record(recorder, w.mask, buffers_.queues.read,
                [&](unsigned l) { return buffers_.queue_entry(vertex, w.place[l]); });
         record(recorder, w.mask, buffers_.rays.read, slot);
     }
-    worker.traversal.closest(w.mask, type_of(vertex), bounce, p.rays, p.hits);
+    worker.traversal->closest(w.mask, type_of(vertex), bounce, p.rays, p.hits);
     if (vertex == 0) {
         record(recorder, w.mask, buffers_.rays.write, slot);
         record(recorder, w.mask, buffers_.paths.write, slot);
@@ -157,10 +158,10 @@ void Wavefront::trace_extend(RecordingWorker& worker, std::uint32_t warp, traces
     // The next kernel has the same lanes: what it computes is known here; where it appends is not.
     recorder.clear();
     shaded.mask = w.mask;
-    const std::uint32_t hit = worker.integrator.arrive(w.mask, vertex, p);
-    const std::uint32_t lit = worker.integrator.shade(hit, vertex, p);
-    shaded.shadow = worker.integrator.aim_at_light(lit, vertex, p);
-    shaded.alive = worker.integrator.scatter(lit, vertex, p);
+    const std::uint32_t hit = path.arrive(w.mask, vertex, p);
+    const std::uint32_t lit = path.shade(hit, vertex, p);
+    shaded.shadow = path.aim_at_light(lit, vertex, p);
+    shaded.alive = path.scatter(lit, vertex, p);
     recorder.store(shaded.texels);
     for_each(w.mask, [&](unsigned l) { state_[w.slot[l] / lanes].copy(w.slot[l] % lanes, p, l); });
 }
@@ -198,8 +199,9 @@ void Wavefront::trace_connect(RecordingWorker& worker, std::uint32_t warp) {
     for_each(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / lanes], w.slot[l] % lanes); });
     recorder.kind(RayType::shadow, bounce);
     record(recorder, w.mask, buffers_.shadows.read, [&](unsigned l) { return w.place[l]; });
-    const std::uint32_t unblocked = w.mask & ~worker.traversal.occluded(w.mask, RayType::shadow, bounce, p.shadow_rays);
-    worker.integrator.collect_light(unblocked, p);
+    const std::uint32_t unblocked =
+        w.mask & ~worker.traversal->occluded(w.mask, RayType::shadow, bounce, p.shadow_rays);
+    worker.integrator->stages()->collect_light(unblocked, p);
     const auto slot = [&](unsigned l) { return w.slot[l]; };
     record(recorder, unblocked, buffers_.paths.read, slot);
     record(recorder, unblocked, buffers_.paths.write, slot);

@@ -35,8 +35,8 @@ struct WavefrontKernel {
     bool operator==(const WavefrontKernel&) const = default;
 };
 
-/// The kernels of every launch, in order. `lit`: there are lights to connect to.
-std::vector<WavefrontKernel> wavefront_kernels(std::uint32_t bounces, bool sorted, bool lit);
+/// The kernels of every launch, in order. `sorted`: queues are.
+std::vector<WavefrontKernel> wavefront_kernels(const StagePlan&, bool sorted);
 
 class Wavefront {
 public:
@@ -46,8 +46,8 @@ public:
     /// `order` may be null; it and `kernels` must outlive this object.
     Wavefront(const std::vector<WavefrontKernel>& kernels, const WavefrontBuffers&, const RayOrder* order, const Jobs&);
 
-    /// Traces a warp of the present kernel, 0 … slots / 32 - 1, each once. Thread-safe with one worker per thread. Sets
-    /// the records and elements of `out`.
+    /// Traces a warp of the present kernel, 0 … slots / 32 - 1, each once. Thread-safe with one worker per thread, of
+    /// an integrator that is cut into stages. Sets the records and elements of `out`.
     void trace_warp(RecordingWorker&, std::uint32_t warp, traces::WarpTrace& out);
 
     /// All warps of the present kernel have been traced: on to the next.

@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
+#include "tracer/bvh/layouts/node_order.hpp"
 #include "traces/error.hpp"
+#include "traces/symbols.hpp"
 
 namespace raycache::tracer {
 namespace {
 
+static_assert(WalkableBvh<Bvh2>);
+
 constexpr std::uint32_t max_depth = 96;
-constexpr std::uint64_t node_base = 0x10'0000'0000, triangle_base = 0x20'0000'0000;
 
 void set_box(Bvh2Node& node, int child, const Box& box) {
     node.x[child] = box.lower.x;
@@ -23,70 +24,60 @@ void set_box(Bvh2Node& node, int child, const Box& box) {
 
 std::uint32_t to_link(std::uint32_t ref) {
     if (ref == ChildRef::nothing) return traces::no_link;
-    if (ChildRef::is_leaf(ref)) return (std::uint32_t{triangle_region} << 30) | ChildRef::first(ref);
-    return (std::uint32_t{node_region} << 30) | ref;
+    if (ChildRef::is_leaf(ref)) return (std::uint32_t{Bvh2::triangle_region} << 30) | ChildRef::first(ref);
+    return (std::uint32_t{Bvh2::node_region} << 30) | ref;
 }
 
 }  // namespace
 
-Bvh2 make_bvh2(const Bvh& bvh, const Scene& scene) {
+std::unique_ptr<Bvh2> make_bvh2(const Bvh& bvh, const Scene& scene, const std::vector<std::uint32_t>& order) {
     if (bvh.triangles.size() > ChildRef::max_first || bvh.depth > max_depth)
         throw Error(fmt::format("{}: a BVH of {} triangle references and {} levels; layout bvh2 holds {} and {}",
                                 scene.name, bvh.triangles.size(), bvh.depth, ChildRef::max_first, max_depth));
-    Bvh2 out;
-    // Inner nodes keep their depth-first order; new_index maps a tree node to its layout node.
-    std::vector<std::uint32_t> new_index(bvh.nodes.size());
-    std::uint32_t inner = 0;
+    auto out = std::make_unique<Bvh2>();
+    std::vector<std::uint32_t> ref_of(bvh.nodes.size());  // of a tree node
     for (std::size_t i = 0; i < bvh.nodes.size(); ++i)
-        new_index[i] = bvh.nodes[i].is_leaf() ? ChildRef::leaf(bvh.nodes[i].first, bvh.nodes[i].count) : inner++;
+        if (bvh.nodes[i].is_leaf()) ref_of[i] = ChildRef::leaf(bvh.nodes[i].first, bvh.nodes[i].count);
+    for (std::uint32_t i = 0; i < order.size(); ++i) ref_of[order[i]] = i;
 
-    out.nodes.reserve(inner + 1);
-    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
-        const Bvh::Node& node = bvh.nodes[i];
-        if (node.is_leaf()) continue;
-        Bvh2Node& made = out.nodes.emplace_back();
-        const std::size_t children[2] = {i + 1, node.first};
+    out->nodes.reserve(order.size() + 1);
+    for (const std::uint32_t i : order) {
+        Bvh2Node& made = out->nodes.emplace_back();
+        const std::size_t children[2] = {std::size_t{i} + 1, bvh.nodes[i].first};
         for (int c = 0; c < 2; ++c) {
             set_box(made, c, bvh.nodes[children[c]].box);
-            made.child[c] = new_index[children[c]];
+            made.child[c] = ref_of[children[c]];
         }
     }
-    if (out.nodes.empty()) {  // the whole scene is one leaf: a root with one child
-        Bvh2Node& root = out.nodes.emplace_back();
+    if (out->nodes.empty()) {  // the whole scene is one leaf: a root with one child
+        Bvh2Node& root = out->nodes.emplace_back();
         set_box(root, 0, bvh.nodes[0].box);
         set_box(root, 1, Box{});
-        root.child[0] = new_index[0];
+        root.child[0] = ref_of[0];
         root.child[1] = ChildRef::nothing;
     }
-
-    out.triangles.reserve(bvh.triangles.size());
-    for (const std::uint32_t t : bvh.triangles) {
-        const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
-        out.triangles.push_back({scene.positions[index[0]], t, scene.positions[index[1]],
-                                 scene.materials[scene.material_of[t]].may_have_holes() ? 1U : 0U,
-                                 scene.positions[index[2]], 0});
-    }
-    out.stack_entries = bvh.depth + 1;
+    out->triangles = leaf_triangles(bvh, scene);
+    out->siblings = bvh.depth + 1;
     return out;
 }
 
-std::vector<traces::Region> bvh2_regions(const Bvh2& bvh) {
-    traces::Region nodes;
-    nodes.kind = traces::ObjectKind::node;
-    nodes.base = node_base;
-    nodes.element_size = nodes.stride = sizeof(Bvh2Node);
-    nodes.count = static_cast<std::uint32_t>(bvh.nodes.size());
-    nodes.degree = 2;
-    nodes.links.reserve(2 * bvh.nodes.size());
-    for (const Bvh2Node& node : bvh.nodes)
-        for (const std::uint32_t ref : node.child) nodes.links.push_back(to_link(ref));
+std::unique_ptr<Bvh2> Bvh2::make(const Bvh& bvh, const Scene& scene) { return make_bvh2(bvh, scene, depth_first(bvh)); }
 
-    traces::Region triangles;
-    triangles.kind = traces::ObjectKind::triangle;
-    triangles.base = triangle_base;
-    triangles.element_size = triangles.stride = sizeof(Bvh2Triangle);
-    triangles.count = static_cast<std::uint32_t>(bvh.triangles.size());
-    return {std::move(nodes), std::move(triangles)};
+std::vector<traces::Region> Bvh2::regions() const {
+    traces::Region region;
+    region.kind = traces::ObjectKind::node;
+    region.base = 0x10'0000'0000;
+    region.element_size = region.stride = sizeof(Bvh2Node);
+    region.count = static_cast<std::uint32_t>(nodes.size());
+    region.degree = 2;
+    region.links.reserve(2 * nodes.size());
+    for (const Bvh2Node& node : nodes)
+        for (const std::uint32_t ref : node.child) region.links.push_back(to_link(ref));
+    return {std::move(region), leaf_triangle_region(triangles.size())};
+}
+
+bool Bvh2::symbols_known() const {
+    return siblings <= traces::symbol_stack_entries && nodes.front().child[1] != ChildRef::nothing;
 }
 
 }  // namespace raycache::tracer

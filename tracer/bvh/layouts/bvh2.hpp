@@ -1,58 +1,46 @@
 // Layout `bvh2`: what a GPU path tracer of the Aila–Laine kind keeps in memory (T. Aila, S. Laine: Understanding the
-// Efficiency of Ray Traversal on GPUs, HPG 2009). A node of 64 B holds the boxes of both children, so one visit decides
-// about two boxes; a triangle of 48 B holds its three vertices. Nodes stand in depth-first order, triangles in leaf
-// order.
+// Efficiency of Ray Traversal on GPUs, HPG 2009). A node of 64 B holds the boxes of both children; a triangle of 48 B
+// its three vertices. Nodes stand in depth-first order, triangles in leaf order.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "tracer/bvh/bvh.hpp"
-#include "traces/header.hpp"
+#include "tracer/bvh/layouts/bvh2_lane.hpp"
+#include "tracer/bvh/layouts/bvh2_node.hpp"
+#include "tracer/bvh/layouts/layout.hpp"
+#include "tracer/bvh/layouts/leaf_triangle.hpp"
 
 namespace raycache::tracer {
 
-/// Names a child: an inner node, a run of triangles, or nothing.
-struct ChildRef {
-    static constexpr std::uint32_t leaf_bit = 0x80000000U;
-    static constexpr std::uint32_t nothing = leaf_bit;
-    static constexpr std::uint32_t max_first = (1U << 28) - 1;
+struct Bvh2 final : BvhLayout {
+    static constexpr const char* name = "bvh2";
+    static constexpr const char* description =
+        "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)";
+    using Tree = Bvh2;
+    static std::unique_ptr<Bvh2> make(const Bvh&, const Scene&);
 
-    static std::uint32_t leaf(std::uint32_t first, std::uint32_t count) { return leaf_bit | (first << 3) | count; }
-    static bool is_leaf(std::uint32_t ref) { return (ref & leaf_bit) != 0; }
-    static std::uint32_t first(std::uint32_t ref) { return (ref & ~leaf_bit) >> 3; }
-    static std::uint32_t count(std::uint32_t ref) { return ref & 7; }
-};
+    /// Regions of the trace: 0 = nodes (with links to children), 1 = triangles.
+    static constexpr std::uint8_t node_region = 0, triangle_region = 1, region_count = 2;
+    static constexpr std::array node_reads{node_region}, triangle_reads{triangle_region};
+    std::vector<traces::Region> regions() const override;
 
-/// Per axis: lower plane of child 0, of child 1, upper plane of child 0, of child 1. An absent child has lower > upper.
-struct alignas(64) Bvh2Node {
-    float x[4], y[4], z[4];
-    std::uint32_t child[2];
-    std::uint32_t unused[2];
-};
-static_assert(sizeof(Bvh2Node) == 64);
+    /// Symbols speak of trees up to some depth, and of roots with two children.
+    bool symbols_known() const override;
 
-struct alignas(16) Bvh2Triangle {
-    Vec3 v0;
-    std::uint32_t triangle;  ///< index in the scene
-    Vec3 v1;
-    std::uint32_t alpha;  ///< 1 if its material may have holes
-    Vec3 v2;
-    std::uint32_t unused;
-};
-static_assert(sizeof(Bvh2Triangle) == 48);
+    using View = Bvh2View;
+    using Lane = Bvh2Lane;
+    View view() const { return {nodes.data(), triangles.data()}; }
+    std::size_t stack_entries() const { return siblings + Lane::more_stack_entries; }
 
-struct Bvh2 {
     std::vector<Bvh2Node> nodes;  ///< node 0 is the root
-    std::vector<Bvh2Triangle> triangles;
-    std::uint32_t stack_entries = 0;  ///< that a depth-first traversal can need
+    std::vector<LeafTriangle> triangles;
+    std::uint32_t siblings = 0;  ///< that a lane can leave on its way
 };
 
-/// Throws Error where the tree is too large or too deep for the layout (2^28 triangles, 96 levels).
-Bvh2 make_bvh2(const Bvh&, const Scene&);
-
-/// Regions of the trace: 0 = nodes (with links to children), 1 = triangles.
-inline constexpr std::uint8_t node_region = 0, triangle_region = 1, texel_region = 2;
-std::vector<traces::Region> bvh2_regions(const Bvh2&);
+/// `order`: see node_order.hpp. Throws Error where the tree is too large or too deep for the layout (2^28 triangles, 96
+/// levels).
+std::unique_ptr<Bvh2> make_bvh2(const Bvh&, const Scene&, const std::vector<std::uint32_t>& order);
 
 }  // namespace raycache::tracer

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tracer/bvh/layouts/bvh2.hpp"
+#include "tracer/bvh/layouts/leaf_triangle.hpp"
 #include "tracer/ray.hpp"
 
 namespace raycache::tracer {
@@ -37,7 +37,7 @@ struct ShearedRay {
 /// Writes t, u, v and returns true if the ray meets the triangle at t in (t_min, best], where `best` is `hit` as it
 /// was: equal distances go to the lower triangle index, whatever the order of the visits. Leaves `hit` alone otherwise.
 /// Both sides count.
-inline bool test_triangle(const Bvh2Triangle& triangle, const ShearedRay& ray, Hit& hit) {
+inline bool test_triangle(const LeafTriangle& triangle, const ShearedRay& ray, Hit& hit) {
     const float* v0 = &triangle.v0.x;
     const float* v1 = &triangle.v1.x;
     const float* v2 = &triangle.v2.x;

@@ -1,4 +1,4 @@
-// Ray against the two boxes of a bvh2 node: the slab test of Kay & Kajiya with the margin of T. Ize, "Robust BVH Ray
+// Ray against two boxes at once: the slab test of Kay & Kajiya with the margin of T. Ize, "Robust BVH Ray
 // Traversal", JCGT 2013, made larger, so that rounding never loses a box the exact ray enters.
 //
 // One SSE register per axis holds {near 0, near 1, far 0, far 1} after a shuffle by the sign of the direction. Far
@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/ray.hpp"
 
 namespace raycache::tracer {
@@ -53,15 +52,18 @@ struct BoxHits {
 inline constexpr BoxHits box_hits[8] = {{0, 0, ~0U}, {0, 0, 0}, {32, 0, 0}, {32, 1, 0},
                                         {0, 0, ~0U}, {0, 0, 0}, {32, 0, 0}, {0, 1, 0}};
 
-inline const BoxHits& test_boxes(const Bvh2Node& node, const BoxRay& ray) {
+/// `Boxes` has arrays x, y, z of four floats, aligned to 16 bytes: per axis lower plane of box 0, of box 1, upper plane
+/// of box 0, of box 1.
+template <class Boxes>
+const BoxHits& test_boxes(const Boxes& boxes, const BoxRay& ray) {
     const auto slab = [&](const float* planes, int axis) {
         const __m128 p = _mm_castsi128_ps(
             _mm_shuffle_epi8(_mm_load_si128(reinterpret_cast<const __m128i*>(planes)), ray.shuffle[axis]));
         return _mm_mul_ps(_mm_sub_ps(p, ray.origin[axis]), ray.inverse[axis]);
     };
-    __m128 t = _mm_max_ps(slab(node.x, 0), ray.limits);
-    t = _mm_max_ps(slab(node.y, 1), t);
-    t = _mm_max_ps(slab(node.z, 2), t);
+    __m128 t = _mm_max_ps(slab(boxes.x, 0), ray.limits);
+    t = _mm_max_ps(slab(boxes.y, 1), t);
+    t = _mm_max_ps(slab(boxes.z, 2), t);
     // {near 0, near 1, far 0, far 1}
     t = _mm_mul_ps(t, _mm_setr_ps(1.0F, 1.0F, -box_margin, -box_margin));
     const __m128 left = _mm_shuffle_ps(t, t, _MM_SHUFFLE(0, 0, 1, 0));

@@ -1,0 +1,26 @@
+#include "tracer/bvh/layouts/leaf_triangle.hpp"
+
+namespace raycache::tracer {
+
+std::vector<LeafTriangle> leaf_triangles(const Bvh& bvh, const Scene& scene) {
+    std::vector<LeafTriangle> triangles;
+    triangles.reserve(bvh.triangles.size());
+    for (const std::uint32_t t : bvh.triangles) {
+        const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
+        triangles.push_back({scene.positions[index[0]], t, scene.positions[index[1]],
+                             scene.materials[scene.material_of[t]].may_have_holes() ? 1U : 0U,
+                             scene.positions[index[2]], 0});
+    }
+    return triangles;
+}
+
+traces::Region leaf_triangle_region(std::size_t count) {
+    traces::Region region;
+    region.kind = traces::ObjectKind::triangle;
+    region.base = 0x20'0000'0000;
+    region.element_size = region.stride = sizeof(LeafTriangle);
+    region.count = static_cast<std::uint32_t>(count);
+    return region;
+}
+
+}  // namespace raycache::tracer

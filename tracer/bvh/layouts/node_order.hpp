@@ -1,0 +1,17 @@
+// In which order a layout keeps the nodes of a tree: indices of its inner nodes in Bvh::nodes, the root first. None
+// where the whole tree is a leaf.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tracer/bvh/bvh.hpp"
+
+namespace raycache::tracer {
+
+/// Each node right before all below its first child, these before all below its second.
+std::vector<std::uint32_t> depth_first(const Bvh&);
+/// Level by level from the root, the nodes of a level from left to right.
+std::vector<std::uint32_t> breadth_first(const Bvh&);
+
+}  // namespace raycache::tracer
