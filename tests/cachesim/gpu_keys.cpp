@@ -85,7 +85,7 @@ TEST_CASE("a value beyond the ends of its row is refused, and the ends are not r
     // A change that breaks a rule of several keys is refused with those; here it is the row that speaks.
     const auto message = [](const std::string& change) -> std::string {
         try {
-            load_gpu("v100", {change});
+            load_gpu("v100", {"warps_per_sm=12", change});  // else resident warps follow from other keys
         } catch (const Error& e) {
             return e.what();
         }
