@@ -1,40 +1,48 @@
 #include "cachesim/cache/lookups.hpp"
 
-#include <bit>
+#include <algorithm>
 
-#include "cachesim/avx512.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cachesim/cache/lookups.cpp"
+#include <hwy/foreach_target.h>
 
-namespace raycache::cachesim {
+#include "cachesim/vector_ops-inl.hpp"
 
+HWY_BEFORE_NAMESPACE();
+namespace raycache::cachesim::HWY_NAMESPACE {
 namespace {
 
-RAYCACHE_AVX512 void drop_answered_avx512(Lookups& l) {
-    constexpr std::size_t lanes = 16;
+/// Of `count` look-ups, those with sectors move to the front; returns how many. Behind the last there is room for a
+/// vector.
+std::size_t keep_fetched(std::uint32_t* lines, std::uint32_t* sectors, std::uint32_t* accesses, std::size_t count) {
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < l.count; i += lanes) {
-        const auto valid =
-            static_cast<__mmask16>(_bzhi_u32(0xffff, static_cast<unsigned>(std::min(l.count - i, lanes))));
-        const __m512i lines = _mm512_maskz_loadu_epi32(valid, &l.lines[i]),
-                      sectors = _mm512_maskz_loadu_epi32(valid, &l.sectors[i]),
-                      accesses = _mm512_maskz_loadu_epi32(valid, &l.accesses[i]);
-        const __mmask16 fetched = _mm512_test_epi32_mask(sectors, sectors);
-        const auto count = static_cast<unsigned>(std::popcount(static_cast<unsigned>(fetched)));
-        const auto store = [&](std::vector<std::uint32_t>& to, __m512i what) RAYCACHE_AVX512 {
-            _mm512_mask_storeu_epi32(&to[kept], valid, _mm512_maskz_compress_epi32(fetched, what));
-        };
-        store(l.lines, lines);
-        store(l.sectors, sectors);
-        store(l.accesses, accesses);
-        kept += count;
+    for (std::size_t i = 0; i < count; i += lanes_of_vector) {
+        const auto left = static_cast<unsigned>(std::min<std::size_t>(count - i, lanes_of_vector));
+        const Vector line = load(lines + i), access = load(accesses + i),
+                     fetched = hn::IfThenElseZero(lowest(left), load(sectors + i));
+        const Mask some = hn::Ne(fetched, hn::Zero(words_tag));
+        store(lines + kept, compressed(line, some));
+        store(sectors + kept, compressed(fetched, some));
+        store(accesses + kept, compressed(access, some));
+        kept += count_of(some);
     }
-    l.count = kept;
+    return kept;
 }
 
 }  // namespace
+}  // namespace raycache::cachesim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "cachesim/dispatch.hpp"
+
+namespace raycache::cachesim {
+
+HWY_EXPORT(keep_fetched);
 
 void Lookups::drop_answered(InstructionSet instructions) {
-    if (instructions >= InstructionSet::avx512) {
-        drop_answered_avx512(*this);
+    if (instructions != InstructionSet::scalar) {
+        count = RAYCACHE_DISPATCH(keep_fetched, instructions)(lines.data(), sectors.data(), accesses.data(), count);
         return;
     }
     std::size_t kept = 0;
@@ -48,3 +56,4 @@ void Lookups::drop_answered(InstructionSet instructions) {
 }
 
 }  // namespace raycache::cachesim
+#endif

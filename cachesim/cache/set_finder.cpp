@@ -2,15 +2,51 @@
 
 #include <algorithm>
 
-#include "cachesim/avx512.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cachesim/cache/set_finder.cpp"
+#include <hwy/foreach_target.h>
+
+#include "cachesim/vector_ops-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace raycache::cachesim::HWY_NAMESPACE {
+namespace {
+
+/// Sets of lines, from tables of what each byte of a line contributes. Reads and writes whole vectors, so that both
+/// arrays have room for one behind the last.
+void find_by_tables(const std::uint32_t* lines, std::size_t count, const std::vector<SetRun>& runs, const LineMap& map,
+                    std::uint32_t* sets) {
+    const auto& tables = map.tables();
+    const std::size_t bytes = std::min<std::size_t>(tables.size(), 4);
+    const hn::RebindToSigned<Words> indices;
+    for (std::size_t i = 0; i < count; i += lanes_of_vector) {
+        const Vector id = load(lines + i);
+        Vector offset = all(runs[0].offset), set = all(runs[0].high);
+        for (std::size_t run = 1; run < runs.size(); ++run) {
+            const Mask before = hn::Lt(id, all(runs[run].first));
+            offset = hn::IfThenElse(before, offset, all(runs[run].offset));
+            set = hn::IfThenElse(before, set, all(runs[run].high));
+        }
+        Vector line = hn::Add(id, offset);
+        for (std::size_t byte = 0; byte < bytes; ++byte) {
+            const auto at = hn::BitCast(indices, hn::And(line, all(0xff)));
+            set = hn::Xor(set, hn::GatherIndex(words_tag, tables[byte].data(), at));
+            line = hn::ShiftRight<8>(line);
+        }
+        store(sets + i, set);
+    }
+}
+
+}  // namespace
+}  // namespace raycache::cachesim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "cachesim/dispatch.hpp"
 
 namespace raycache::cachesim {
 
-namespace {
-
-RAYCACHE_AVX512 inline __m512i all(std::uint32_t value) { return _mm512_set1_epi32(static_cast<int>(value)); }
-
-}  // namespace
+HWY_EXPORT(find_by_tables);
 
 SetFinder::SetFinder(const CacheGeometry& geometry, const LineIds& ids, InstructionSet instructions)
     : map_(geometry, ids.last_line()),
@@ -19,7 +55,7 @@ SetFinder::SetFinder(const CacheGeometry& geometry, const LineIds& ids, Instruct
     if (!ids.dense()) return;
     if (map_.is_low_bits() && geometry.sets <= 1u << LineIds::equal_bits) form_ = Form::low_bits;
     constexpr std::size_t most_runs = 8;
-    if (map_.tables().empty() || instructions < InstructionSet::avx512 || ids.runs().size() > most_runs) return;
+    if (map_.tables().empty() || instructions == InstructionSet::scalar || ids.runs().size() > most_runs) return;
     const auto& runs = ids.runs();
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].first : ids.bound();
@@ -28,31 +64,9 @@ SetFinder::SetFinder(const CacheGeometry& geometry, const LineIds& ids, Instruct
         runs_.push_back({runs[i].first, static_cast<std::uint32_t>(runs[i].offset),
                          static_cast<std::uint32_t>(map_(first >> 32 << 32))});
     }
+    find_by_tables_ = RAYCACHE_DISPATCH(find_by_tables, instructions);
     form_ = Form::tables;
 }
 
-RAYCACHE_AVX512 void SetFinder::find_by_tables(const Lookups& lookups, std::uint32_t* sets) const {
-    constexpr std::size_t lanes = 16;
-    const auto& tables = map_.tables();
-    const std::size_t bytes = std::min<std::size_t>(tables.size(), 4);
-    for (std::size_t i = 0; i < lookups.count; i += lanes) {
-        const auto count = static_cast<unsigned>(std::min(lookups.count - i, lanes));
-        const __m512i id =
-            _mm512_maskz_loadu_epi32(static_cast<__mmask16>(_bzhi_u32(0xffff, count)), &lookups.lines[i]);
-        __m512i offset = all(runs_[0].offset), set = all(runs_[0].high);
-        for (std::size_t run = 1; run < runs_.size(); ++run) {
-            const __mmask16 in = _mm512_cmpge_epu32_mask(id, all(runs_[run].first));
-            offset = _mm512_mask_mov_epi32(offset, in, all(runs_[run].offset));
-            set = _mm512_mask_mov_epi32(set, in, all(runs_[run].high));
-        }
-        __m512i line = _mm512_add_epi32(id, offset);
-        for (std::size_t byte = 0; byte < bytes; ++byte) {
-            set = _mm512_xor_si512(
-                set, _mm512_i32gather_epi32(_mm512_and_si512(line, all(0xff)), tables[byte].data(), sizeof(int)));
-            line = _mm512_srli_epi32(line, 8);
-        }
-        _mm512_storeu_si512(&sets[i], set);
-    }
-}
-
 }  // namespace raycache::cachesim
+#endif

@@ -12,6 +12,11 @@
 
 namespace raycache::cachesim {
 
+/// Form::tables: of a run of ids, the low half of its lines' offset and what the high half contributes to a set.
+struct SetRun {
+    std::uint32_t first, offset, high;
+};
+
 class SetFinder {
 public:
     /// `ids` must outlive this object.
@@ -31,7 +36,7 @@ public:
                 for (std::size_t i = 0; i < lookups.count; ++i) sets[i] = lines[i] & (sets_per_cache_ - 1);
                 break;
             case Form::tables:
-                find_by_tables(lookups, sets);
+                find_by_tables_(lines, lookups.count, runs_, map_, sets);
                 break;
             case Form::any:
                 for (std::size_t i = 0; i < lookups.count; ++i)
@@ -53,22 +58,18 @@ public:
 private:
     enum class Form {
         low_bits,  ///< one slice, linear sets, and an id has the low bits of its line
-        tables,    ///< LineMap::tables(), sixteen lines at once
+        tables,    ///< LineMap::tables(), a vector of lines at once
         any,
     };
     static constexpr std::size_t room = 16;  ///< for a vector that is written beyond the last look-up
-
-    void find_by_tables(const Lookups&, std::uint32_t* sets) const;
 
     LineMap map_;
     const LineIds& ids_;
     std::uint32_t sets_per_cache_;
     Form form_ = Form::any;
-    /// Form::tables: of each run of ids, the low half of its lines' offset and what the high half contributes.
-    struct Run {
-        std::uint32_t first, offset, high;
-    };
-    std::vector<Run> runs_;
+    std::vector<SetRun> runs_;
+    void (*find_by_tables_)(const std::uint32_t* lines, std::size_t count, const std::vector<SetRun>&, const LineMap&,
+                            std::uint32_t* sets) = nullptr;  ///< for the instruction set
 };
 
 }  // namespace raycache::cachesim

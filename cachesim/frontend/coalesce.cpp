@@ -50,7 +50,7 @@ Coalescer::Coalescer(const std::vector<traces::Region>& regions, const LineShape
         most_lines = std::max<std::size_t>(most_lines, (regions[i].element_size - 1) / shape.line_bytes + 2);
         vectors &= layouts_.back().vectors;
     }
-    vectors_ = vectors && instructions >= InstructionSet::avx512;
+    if (vectors) vectors_ = coalesce_vectors(instructions);
     most_lookups_ = most_lines * traces::warp_lanes + 1;
     // At most a quarter full, so that a probe rarely meets another line.
     table_.resize(std::bit_ceil(std::max<std::size_t>(256, 4 * most_lookups_)));
@@ -59,7 +59,7 @@ Coalescer::Coalescer(const std::vector<traces::Region>& regions, const LineShape
 
 void Coalescer::operator()(std::span<const WarpAccess> accesses, std::uint32_t first, Lookups& out) {
     if (vectors_) {
-        coalesce_avx512(accesses, first, layouts_, shape_, packed_, out);
+        vectors_(accesses, first, layouts_, shape_, packed_, out);
         return;
     }
     for (const WarpAccess& access : accesses) add_one(access, first++, out);

@@ -12,7 +12,7 @@
 
 #include "cachesim/cache/line_ids.hpp"
 #include "cachesim/cache/lookups.hpp"
-#include "cachesim/frontend/coalesce_avx512.hpp"
+#include "cachesim/frontend/coalesce_vectors.hpp"
 #include "cachesim/frontend/region_layout.hpp"
 #include "cachesim/frontend/warp_access.hpp"
 #include "cachesim/instruction_set.hpp"
@@ -33,8 +33,8 @@ private:
 
     LineShape shape_;
     LineIds& ids_;
-    bool vectors_ = false;          ///< the machine has AVX-512, and every region can use it
-    std::size_t most_lookups_ = 0;  ///< of one access
+    CoalesceVectors* vectors_ = nullptr;  ///< where the machine has vectors, and every region can use them
+    std::size_t most_lookups_ = 0;        ///< of one access
     std::vector<RegionLayout> layouts_;
     std::vector<std::uint32_t> table_;
     int table_shift_ = 0;

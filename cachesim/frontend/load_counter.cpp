@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "cachesim/avx512.hpp"
+#include "cachesim/frontend/distinct.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "traces/record.hpp"
 
@@ -15,38 +15,6 @@ namespace {
 /// Lanes [first, first + count) of the mask, moved to bit 0.
 std::uint32_t group_of(std::uint32_t mask, unsigned first, unsigned count) {
     return static_cast<std::uint32_t>(mask >> first & ((std::uint64_t{1} << count) - 1));
-}
-
-unsigned distinct_of(const std::uint32_t* elements, unsigned count) {
-    std::uint64_t low_bits = 0;  // bit b: an element with these six low bits has come
-    unsigned distinct = 0;
-    for (unsigned i = 0; i < count; ++i) {
-        const std::uint64_t bit = std::uint64_t{1} << (elements[i] & 63);
-        unsigned first = i;
-        if (low_bits & bit)
-            for (first = 0; elements[first] != elements[i];) ++first;
-        distinct += first == i;
-        low_bits |= bit;
-    }
-    return distinct;
-}
-
-/// distinct_of() for any number of lanes, sixteen at once.
-RAYCACHE_AVX512 unsigned distinct_avx512(const std::uint32_t* elements, unsigned count) {
-    const auto first_lanes = static_cast<__mmask16>(_bzhi_u32(0xffff, count));
-    const __m512i first = _mm512_maskz_loadu_epi32(first_lanes, elements);
-    unsigned repeated = _mm512_mask_test_epi32_mask(first_lanes, _mm512_conflict_epi32(first), _mm512_set1_epi32(-1));
-    if (count <= 16) return count - static_cast<unsigned>(std::popcount(repeated));
-    const auto second_lanes = static_cast<__mmask16>(_bzhi_u32(0xffff, count - 16));
-    const __m512i second = _mm512_maskz_loadu_epi32(second_lanes, elements + 16);
-    repeated |= static_cast<unsigned>(
-                    _mm512_mask_test_epi32_mask(second_lanes, _mm512_conflict_epi32(second), _mm512_set1_epi32(-1)))
-                << 16;
-    unsigned in_first = 0;
-    for (unsigned lane = 0; lane < 16; ++lane)
-        in_first |=
-            _mm512_mask_cmpeq_epi32_mask(second_lanes, second, _mm512_set1_epi32(static_cast<int>(elements[lane])));
-    return count - static_cast<unsigned>(std::popcount(repeated | in_first << 16));
 }
 
 }  // namespace
@@ -95,9 +63,8 @@ LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEn
 
 unsigned LoadCounter::distinct(std::uint32_t mask, const std::uint32_t* elements, unsigned lanes_per_request) {
     if (lanes_per_request == traces::warp_lanes) {
-        static const bool avx512 = best_instruction_set() >= InstructionSet::avx512;
-        const auto lanes = static_cast<unsigned>(std::popcount(mask));
-        return avx512 ? distinct_avx512(elements, lanes) : distinct_of(elements, lanes);
+        static CountDistinct* const count = count_distinct(best_instruction_set());
+        return count(elements, static_cast<unsigned>(std::popcount(mask)));
     }
     if (lanes_per_request == 2) {
         unsigned equal = 0;
@@ -110,7 +77,7 @@ unsigned LoadCounter::distinct(std::uint32_t mask, const std::uint32_t* elements
     unsigned sum = 0;
     for (unsigned lane = 0; lane < traces::warp_lanes; lane += lanes_per_request) {
         const auto lanes = static_cast<unsigned>(std::popcount(group_of(mask, lane, lanes_per_request)));
-        sum += distinct_of(elements, lanes);
+        sum += distinct_by_bits(elements, lanes);
         elements += lanes;
     }
     return sum;

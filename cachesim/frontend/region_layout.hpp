@@ -58,7 +58,7 @@ struct RegionLayout {
     std::uint32_t in_line = 0;           ///< aligned: elements per line - 1
     std::vector<std::uint32_t> sectors;  ///< aligned, dense ids: of each element of a line
     /// No element is larger than a line, a line has at most 8 sectors, bytes counted from the start of the first line
-    /// fit 32 bits, and ids 28: what coalesce_avx512() needs.
+    /// fit 32 bits, and ids 28: what coalesce_vectors() needs.
     bool vectors = false;
     std::uint32_t start;        ///< byte of element 0 in its line
     bool few_per_line = false;  ///< aligned, and `table` holds `sectors`

@@ -4,41 +4,11 @@
 
 #include <algorithm>
 
-#include "cachesim/avx512.hpp"
 #include "cachesim/gpus/limits.hpp"
-#include "cachesim/instruction_set.hpp"
+#include "cachesim/replay/quick_check.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::cachesim {
-
-namespace {
-
-/// Whether nothing is wrong with the warp, without saying what.
-RAYCACHE_AVX512 bool is_right_avx512(const traces::WarpTrace& warp, const std::vector<traces::Region>& regions) {
-    constexpr unsigned at_once = 16;
-    const std::uint32_t *element = warp.elements.data(), *const end = element + warp.elements.size();
-    unsigned wrong = 0;
-    for (const traces::Record& record : warp.records) {
-        if (static_cast<unsigned>(record.ray) >= traces::ray_types) return false;
-        if (!record.is_access()) continue;
-        const unsigned lanes = record.lanes();
-        if (record.region >= regions.size() || lanes == 0 || lanes > end - element) return false;
-        const __m512i count = _mm512_set1_epi32(static_cast<int>(regions[record.region].count));
-        for (unsigned left = lanes;;) {
-            const auto active = static_cast<__mmask16>(_bzhi_u32(0xffff, left));
-            wrong |= _mm512_mask_cmpge_epu32_mask(active, _mm512_maskz_loadu_epi32(active, element), count);
-            if (left <= at_once) {
-                element += left;
-                break;
-            }
-            left -= at_once;
-            element += at_once;
-        }
-    }
-    return wrong == 0 && element == end;
-}
-
-}  // namespace
 
 const Gpu& checked(const Gpu& gpu) {
     if (const auto problem = find_problem(gpu))
@@ -79,8 +49,8 @@ const Gpu& checked_timed(const Gpu& gpu) {
 }
 
 void check(const traces::WarpTrace& warp, const std::vector<traces::Region>& regions) {
-    static const bool avx512 = best_instruction_set() >= InstructionSet::avx512;
-    if (avx512 && is_right_avx512(warp, regions)) return;
+    static IsRight* const is_right = quick_check(best_instruction_set());
+    if (is_right && is_right(warp, regions)) return;
     const auto where = [&] { return fmt::format("launch {}, warp {} of the trace", warp.launch, warp.warp); };
     std::size_t next = 0;
     for (const traces::Record& record : warp.records) {

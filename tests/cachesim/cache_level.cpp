@@ -4,14 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "cachesim/cache/policies/lru_avx512.hpp"
+#include "cachesim/cache/policies/lru_buckets.hpp"
 #include "cachesim/cache/policies/lru_few_ways.hpp"
 #include "cachesim/cache/policies/lru_many_ways.hpp"
-#include "cachesim/cache/policies/lru_many_ways_avx512.hpp"
 #include "cachesim/cache/registry.hpp"
 #include "look_up.hpp"
 #include "oracle.hpp"
-#include "tests/skip.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache::cachesim;
@@ -43,24 +41,26 @@ void fills_and_evicts_by_hand(Level&& level) {
     CHECK(look_up(level, g, 0, 0b0001) == 0b0001);
 }
 
-bool has_avx512() {
-    if (best_instruction_set() >= InstructionSet::avx512) return true;
-    raycache::test::skip("this processor has no AVX-512", "run the tests on one that has");
-    return false;
+/// Those of this machine that have vectors.
+std::vector<InstructionSet> vector_sets() {
+    auto sets = instruction_sets();
+    std::erase(sets, InstructionSet::scalar);
+    return sets;
 }
 
 }  // namespace
 
 TEST_CASE("a tiny cache fills and evicts as computed by hand") {
-    fills_and_evicts_by_hand(LevelWith<LruFewWays>(geometry(1, 2), 1));
     fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint16_t>>(geometry(1, 2), 1));
     fills_and_evicts_by_hand(LevelWith<LruManyWays<std::uint32_t>>(geometry(1, 2), 1));
 }
 
 TEST_CASE("a tiny cache fills and evicts as computed by hand, in vectors") {
-    if (!has_avx512()) return;
-    fills_and_evicts_by_hand(std::move(*make_lru_avx512(geometry(1, 2), 1)));
-    fills_and_evicts_by_hand(std::move(*make_lru_many_ways_avx512(geometry(1, 2), 1)));
+    for (const InstructionSet instructions : vector_sets()) {
+        CAPTURE(name_of(instructions));
+        fills_and_evicts_by_hand(std::move(*make_lru_few_ways(geometry(1, 2), 1, instructions)));
+        fills_and_evicts_by_hand(std::move(*make_lru_buckets(geometry(1, 2), 1, instructions)));
+    }
 }
 
 TEST_CASE("caches of a level share nothing") {
@@ -127,9 +127,8 @@ std::uint32_t naive_lru(std::vector<std::pair<std::uint32_t, std::uint32_t>>& se
 
 TEST_CASE("a cache of many ways forgets what was used least recently, over more look-ups than its clock counts",
           "[slow]") {
-    if (!has_avx512()) return;
     const CacheGeometry g = geometry(2, 70);
-    const auto level = make_lru_many_ways_avx512(g, 1);
+    const auto level = make_lru_buckets(g, 1, vector_sets().back());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> naive[2];
     std::mt19937 random(5);
     std::vector<std::uint32_t> sets(1 << 16), lines(sets.size()), sectors(sets.size()), expected(sets.size());

@@ -1,17 +1,21 @@
-#include "cachesim/cache/policies/lru_many_ways_avx512.hpp"
+#include "cachesim/cache/policies/lru_buckets.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <utility>
 #include <vector>
 
-#include "cachesim/avx512.hpp"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cachesim/cache/policies/lru_buckets.cpp"
+#include <hwy/foreach_target.h>
 
-namespace raycache::cachesim {
+#include "cachesim/vector_ops-inl.hpp"
 
+HWY_BEFORE_NAMESPACE();
+namespace raycache::cachesim::HWY_NAMESPACE {
 namespace {
 
-constexpr std::uint32_t lanes = 16;
+constexpr std::uint32_t lanes = 16;  ///< of a bucket
 constexpr std::uint32_t no_line = ~std::uint32_t{0};
 /// A state is time << 8, whether the line is in the queue, and its sectors.
 constexpr int time_shift = 8;
@@ -34,14 +38,17 @@ struct Set {
     std::uint32_t lines = 0, begin = 0, end = 0;
 };
 
-RAYCACHE_AVX512 inline __m512i all(std::uint32_t value) { return _mm512_set1_epi32(static_cast<int>(value)); }
-RAYCACHE_AVX512 inline std::uint32_t equal(const Bucket& bucket, std::uint32_t word) {
-    return _mm512_cmpeq_epi32_mask(_mm512_load_si512(bucket.words), all(word));
+/// Bit i: word i of the bucket is equal.
+HWY_INLINE std::uint32_t equal(const Bucket& bucket, std::uint32_t word) {
+    std::uint32_t bits = 0;
+    for (unsigned i = 0; i < lanes; i += lanes_of_vector)
+        bits |= bits_of(hn::Eq(hn::Load(words_tag, bucket.words + i), all(word))) << i;
+    return bits;
 }
 
-class LruManyWaysAvx512 final : public Level {
+class LruBuckets final : public Level {
 public:
-    LruManyWaysAvx512(const CacheGeometry& geometry, unsigned caches)
+    LruBuckets(const CacheGeometry& geometry, unsigned caches)
         : fill_(geometry),
           ways_(static_cast<std::uint32_t>(geometry.ways)),
           sets_per_cache_(static_cast<std::uint32_t>(geometry.slices * geometry.sets)),
@@ -58,8 +65,8 @@ public:
           ages_(slots_ + lanes),
           slots_by_age_(slots_ + lanes) {}
 
-    RAYCACHE_AVX512 void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
-                                 std::size_t count) override {
+    void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
+                 std::size_t count) override {
         for (std::size_t i = 0; i < count;) {
             const std::uint32_t number = sets[i] / sets_per_cache_;
             Cache& cache = caches_[number];
@@ -75,8 +82,8 @@ public:
 private:
     /// Look-ups from `i` to at most `end` as long as they are to this cache. Returns the first that was not done.
     template <bool widens>
-    RAYCACHE_AVX512 std::size_t process_one(std::uint32_t number, const std::uint32_t* sets, const std::uint32_t* lines,
-                                            std::uint32_t* sectors, std::size_t i, std::size_t end) {
+    std::size_t process_one(std::uint32_t number, const std::uint32_t* sets, const std::uint32_t* lines,
+                            std::uint32_t* sectors, std::size_t i, std::size_t end) {
         const std::uint32_t first = number * sets_per_cache_, sets_per_cache = sets_per_cache_;
         const Bucket* const tags = tags_of(number);
         std::uint32_t* const states = states_of(number);
@@ -130,8 +137,8 @@ private:
     }
 
     /// The line is not in the bucket where it belongs: it has strayed to another one, or is absent.
-    RAYCACHE_AVX512 std::uint32_t look_further(std::uint32_t number, std::uint32_t set_number, std::uint32_t line,
-                                               std::uint32_t wanted) {
+    std::uint32_t look_further(std::uint32_t number, std::uint32_t set_number, std::uint32_t line,
+                               std::uint32_t wanted) {
         Bucket* const tags = tags_of(number);
         std::uint32_t* const states = states_of(number);
         std::uint32_t* const strayed = &strayed_[std::size_t{number} * buckets_];
@@ -167,7 +174,7 @@ private:
     std::uint32_t next(std::uint32_t bucket) const { return (bucket + 1) & (buckets_ - 1); }
 
     /// Takes out the least recently used line of the set.
-    RAYCACHE_AVX512 void evict(std::uint32_t number, std::uint32_t set_number) {
+    void evict(std::uint32_t number, std::uint32_t set_number) {
         Set& set = sets_[set_number];
         const std::uint32_t* const queue = &queues_[std::size_t{set_number} * ways_];
         std::uint32_t* const states = states_of(number);
@@ -186,30 +193,28 @@ private:
 
     /// Puts lines into the queues of their sets, oldest first: those that were last used between the horizon and a
     /// later one. No two were used at the same time, so the time is where to put them for sorting.
-    [[gnu::noinline]] RAYCACHE_AVX512 void move_horizon(std::uint32_t number) {
+    [[gnu::noinline]] void move_horizon(std::uint32_t number) {
         Cache& cache = caches_[number];
         std::uint32_t* const states = states_of(number);
         const std::uint32_t span = std::min(cache.span, cache.now - cache.horizon);
-        const __m512i from = all(cache.horizon), width = all(span);
-        const __m512i places = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        const Vector from = all(cache.horizon), width = all(span);
         std::uint32_t found = 0;
-        for (std::uint32_t slot = 0; slot < slots_; slot += lanes) {
-            const __m512i time = _mm512_srli_epi32(_mm512_load_si512(states + slot), time_shift);
-            const __m512i age = _mm512_sub_epi32(time, from);
-            const __mmask16 between = _mm512_cmplt_epu32_mask(age, width);
-            _mm512_storeu_si512(&ages_[found], _mm512_maskz_compress_epi32(between, age));
-            _mm512_storeu_si512(&slots_by_age_[found],
-                                _mm512_maskz_compress_epi32(between, _mm512_add_epi32(places, all(slot))));
-            found += static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(between)));
+        for (std::uint32_t slot = 0; slot < slots_; slot += lanes_of_vector) {
+            const Vector time = hn::ShiftRight<time_shift>(hn::Load(words_tag, states + slot));
+            const Vector age = hn::Sub(time, from);
+            const Mask between = hn::Lt(age, width);
+            store(&ages_[found], compressed(age, between));
+            store(&slots_by_age_[found], compressed(hn::Add(places(), all(slot)), between));
+            found += count_of(between);
         }
         by_time_.assign((span + lanes - 1) / lanes * lanes, no_line);
         for (std::uint32_t i = 0; i < found; ++i) by_time_[ages_[i]] = slots_by_age_[i];
         std::uint32_t sorted = 0;
-        for (std::size_t t = 0; t < by_time_.size(); t += lanes) {
-            const __m512i slots = _mm512_loadu_si512(&by_time_[t]);
-            const __mmask16 some = _mm512_cmpneq_epi32_mask(slots, all(no_line));
-            _mm512_storeu_si512(&slots_by_age_[sorted], _mm512_maskz_compress_epi32(some, slots));
-            sorted += static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(some)));
+        for (std::size_t t = 0; t < by_time_.size(); t += lanes_of_vector) {
+            const Vector slots = load(&by_time_[t]);
+            const Mask some = hn::Ne(slots, all(no_line));
+            store(&slots_by_age_[sorted], compressed(slots, some));
+            sorted += count_of(some);
         }
         forget_used(number);
         for (std::uint32_t i = 0; i < sorted; ++i) {
@@ -268,15 +273,28 @@ private:
     std::vector<std::uint32_t> ages_, slots_by_age_, by_time_;  ///< of move_horizon()
 };
 
-}  // namespace
+Level* new_lru_buckets(const CacheGeometry& geometry, unsigned caches) { return new LruBuckets(geometry, caches); }
 
-bool fits_lru_many_ways_avx512(const CacheGeometry& geometry) {
+}  // namespace
+}  // namespace raycache::cachesim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "cachesim/dispatch.hpp"
+
+namespace raycache::cachesim {
+
+HWY_EXPORT(new_lru_buckets);
+
+bool suits_lru_buckets(const CacheGeometry& geometry, InstructionSet instructions) {
     const std::uint64_t lines = geometry.slices * geometry.sets * geometry.ways;
-    return geometry.line_bytes / geometry.sector_bytes < 8 && lines <= std::uint64_t{1} << 22;
+    return instructions >= InstructionSet::avx2 && geometry.line_bytes / geometry.sector_bytes < 8 &&
+           lines <= std::uint64_t{1} << 22;
 }
 
-std::unique_ptr<Level> make_lru_many_ways_avx512(const CacheGeometry& geometry, unsigned caches) {
-    return std::make_unique<LruManyWaysAvx512>(geometry, caches);
+std::unique_ptr<Level> make_lru_buckets(const CacheGeometry& geometry, unsigned caches, InstructionSet instructions) {
+    return std::unique_ptr<Level>(RAYCACHE_DISPATCH(new_lru_buckets, instructions)(geometry, caches));
 }
 
 }  // namespace raycache::cachesim
+#endif

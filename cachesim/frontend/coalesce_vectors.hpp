@@ -1,4 +1,4 @@
-// Coalescing in AVX-512, sixteen lanes at once: the same look-ups in the same order as Coalescer without it.
+// Coalescing in vectors, as many lanes at once as they have: the same look-ups in the same order as Coalescer without.
 //
 // Most accesses of divergent rays have few lanes, so lanes of consecutive accesses are packed into one vector as long
 // as whole accesses fit.
@@ -11,6 +11,7 @@
 #include "cachesim/cache/lookups.hpp"
 #include "cachesim/frontend/region_layout.hpp"
 #include "cachesim/frontend/warp_access.hpp"
+#include "cachesim/instruction_set.hpp"
 
 namespace raycache::cachesim {
 
@@ -20,9 +21,11 @@ struct PackedLanes {
     std::vector<std::uint32_t> begin, accesses;  ///< of each vector: its first lane, and whose that is
 };
 
-/// Adds the look-ups of the accesses, numbered from `first` on. All regions must have RegionLayout::vectors, and the
-/// machine InstructionSet::avx512.
-void coalesce_avx512(std::span<const WarpAccess>, std::uint32_t first, const std::vector<RegionLayout>&,
-                     const LineShape&, PackedLanes&, Lookups& out);
+using CoalesceVectors = void(std::span<const WarpAccess>, std::uint32_t first, const std::vector<RegionLayout>&,
+                             const LineShape&, PackedLanes&, Lookups& out);
+
+/// What adds the look-ups of accesses, numbered from `first` on. All regions must have RegionLayout::vectors. Nothing
+/// for vectors of 128 bits, where Coalescer's own way is faster.
+CoalesceVectors* coalesce_vectors(InstructionSet);
 
 }  // namespace raycache::cachesim
