@@ -53,6 +53,8 @@ class IdleOptions(ProgramTest):
         self.assertEqual(self.capture("--strategy", "coherent", "--seed", "5"), set())  # chooses the index
         self.assertEqual(self.capture("--strategy", "coherent", "--seed", "5", "--spp", "1"), {"--seed"})
         self.assertEqual(self.capture("--strategy", "coherent", "--thread-map", "classes", "--interleave", "4"), set())
+        self.assertEqual(self.capture("--strategy", "owen@tile", "--thread-map", "samples"), {"--thread-map"})
+        self.assertEqual(self.capture("--strategy", "owen@tile", "--thread-map", "tile"), set())
 
     def test_an_n_between_powers_of_two_is_pointed_out_for_nets(self):
         for sequence, strategy, expected in (("sobol", "owen", True), ("pmj02", "micro-jitter", True),

@@ -71,6 +71,33 @@ class Strategies(ProgramTest):
         self.assertIn("interleaved", text)
         self.assertTrue(self.path("a.exr").exists())
 
+    def test_a_thread_map_in_the_name_holds_for_that_row_and_tells_it_apart(self):
+        compare = ["compare", "--scene", *SCENE, "--resolution", "32x32", "--trace-samples", "1", "--spp", "32", *GPU]
+        names = ["cranley-patterson", "cranley-patterson@classes", "interleaved@tile", "owen+wavefront@tile"]
+        maps = ["samples", "classes:8", "tile", "tile"]
+        mixed = [*compare, "--strategy", ",".join(names), "--thread-map", "samples"]
+        for format in ([], ["--timed"]):
+            rows = self.succeeds(*mixed, *format, "--json").json["rows"]
+            self.assertEqual([(row["strategy"], row["thread_map"]) for row in rows], list(zip(names, maps, strict=True)))
+        alone = self.succeeds(*compare, "--strategy", "cranley-patterson", "--thread-map", "classes", "--json").json["rows"]
+        row = self.succeeds(*mixed, "--json").json["rows"][1]
+        self.assertEqual(row["totals"], alone[0]["totals"])
+        against = self.succeeds(*compare, "--strategy", ",".join(names[:2]), "--json").json["rows"]
+        self.assertGreater(against[1]["dram_bytes_ratio"]["mean"], 0)  # held against the tiles
+        text = self.succeeds("explain", *SCENE, "--resolution", "32x32", "--trace-samples", "1", *GPU, "--counts-only",
+                             "--strategy", "cranley-patterson,cranley-patterson@classes").text
+        self.assertIn("cranley-patterson@classes", text)
+
+    def test_a_thread_map_in_the_name_gives_the_trace_of_the_option(self):
+        by_name = self.recorded("--strategy", "owen@samples")
+        trace = self.path("trace.rct").read_bytes()
+        self.assertEqual(self.recorded("--strategy", "owen", "--thread-map", "samples"), by_name)
+        self.assertEqual(self.path("trace.rct").read_bytes(), trace)
+        self.assertIn("did you mean 'samples'?", self.refuses(2, *CAPTURE, "--strategy", "owen@sample"))
+        for command in (["render", *SCENE], ["quality", *SCENE, "--reference", "r.exr"]):
+            output = ["-o", "a.png"] if command[0] == "render" else []
+            self.assertIn("'owen@tile'", self.refuses(2, *command, "--strategy", "owen@tile", *output))
+
     def test_the_command_of_a_trace_makes_the_same_trace_again(self):
         recorded = self.recorded("--strategy", "interleaved", "--interleave", "3", "--seed", "7")
         command = recorded["traces"][0]["command_line"]

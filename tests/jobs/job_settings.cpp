@@ -111,7 +111,7 @@ TEST_CASE("Settings that make no sense are refused when the job is run, before a
     CHECK_THAT(refusal(explain), Contains("expected two names"));
     CHECK_THAT(refusal(tools::CaptureJob{}), Contains("output"));
     tools::QualityJob quality;
-    quality.cases = {{"owen", "sobol", 4, {}, {}}};
+    quality.cases = {{{"owen"}, "sobol", 4, {}, {}}};
     quality.reference_strategy = "coherent";
     CHECK_THAT(refusal(quality), Contains("expected one without bias"));
     quality.repeats = 0;

@@ -10,7 +10,8 @@ tools::LaunchSettings small_launches(const std::vector<std::string>& strategies)
     launches.scene.detail = 50000;
     launches.sampling.resolution = "32x24";
     launches.sampling.trace_samples = 2;
-    for (const std::string& strategy : strategies) launches.cases.push_back({strategy, "sobol", 4, {}, {}});
+    for (const std::string& strategy : strategies)
+        launches.cases.push_back({tracer::parse_strategy_name(strategy), "sobol", 4, {}, {}});
     return launches;
 }
 

@@ -15,7 +15,7 @@ void ExplainJob::check() const {
                                      launches.traces.size() == 1 ? "" : "s"));
     if (!launches.of_traces() && launches.cases.size() != 2) {
         std::vector<std::string> names;
-        for (const CaseSettings& c : launches.cases) names.push_back(c.strategy);
+        for (const CaseSettings& c : launches.cases) names.push_back(to_string(c.strategy));
         throw UsageError(fmt::format("--strategy '{}': expected two names, BASE,OTHER, found {}", fmt::join(names, ","),
                                      names.size()));
     }

@@ -64,7 +64,7 @@ std::array<std::string, 2> names_of(const ExplainRequest& request) {
         if (first == second) return;
         for (std::size_t i = 0; i < 2; ++i) names[i] += (names[i].empty() ? "" : " ") + (i == 0 ? first : second);
     };
-    add(a.decorrelation, b.decorrelation);
+    add(to_string(request.sources[0]->strategy), to_string(request.sources[1]->strategy));
     if (a.decorrelation == b.decorrelation) add(a.parameters, b.parameters);
     add(a.sequence, b.sequence);
     add(fmt::format("N={}", a.spp), fmt::format("N={}", b.spp));

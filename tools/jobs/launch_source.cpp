@@ -13,9 +13,9 @@ TraceFiles::TraceFiles(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         readers.push_back(std::make_unique<traces::Reader>(path));
         const traces::Reader* reader = readers.back().get();
-        sources.push_back({&reader->header(), [reader](std::uint32_t launch, const WarpSink& sink) {
-                               traces::read_launch(*reader, launch, sink);
-                           }});
+        sources.push_back(
+            {&reader->header(), tracer::strategy_name(reader->header().provenance),
+             [reader](std::uint32_t launch, const WarpSink& sink) { traces::read_launch(*reader, launch, sink); }});
     }
 }
 
@@ -23,7 +23,8 @@ std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::C
     std::vector<LaunchSource> sources;
     for (const auto& owned : captures) {
         const tracer::Capture* capture = owned.get();
-        sources.push_back({&capture->header(), [capture](std::uint32_t launch, const WarpSink& sink) {
+        sources.push_back({&capture->header(), tracer::strategy_name(capture->header().provenance),
+                           [capture](std::uint32_t launch, const WarpSink& sink) {
                                const auto worker = capture->make_worker();
                                capture->trace_launch(*worker, launch, sink);
                            }});
@@ -38,11 +39,6 @@ void refuse_wavefront(const traces::Header& header, const std::string& path, con
                     "warps keep their rays from the camera on; use replay or compare, or capture it with --execution "
                     "megakernel",
                     path, header.kernels_per_launch, command));
-}
-
-std::string strategy_name(const traces::Provenance& p) {
-    if (p.execution == traces::Provenance{}.execution) return p.decorrelation;
-    return p.decorrelation + '+' + (p.order == "none" ? p.execution : p.order);
 }
 
 std::uint64_t count_rays(const traces::WarpTrace& warp) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tracer/capture.hpp"
+#include "tracer/strategy_name.hpp"
 #include "traces/header.hpp"
 #include "traces/reader.hpp"
 #include "traces/record.hpp"
@@ -19,6 +20,7 @@ using WarpSink = std::function<void(traces::WarpTrace&&)>;
 
 struct LaunchSource {
     const traces::Header* header;
+    tracer::StrategyName strategy;                                       ///< what tables call it
     std::function<void(std::uint32_t launch, const WarpSink&)> deliver;  ///< thread-safe
 };
 
@@ -34,9 +36,6 @@ std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::C
 
 /// Throws UsageError for a trace of more than one kernel: `command` follows warps through a whole launch.
 void refuse_wavefront(const traces::Header&, const std::string& path, const char* command);
-
-/// What tables call the strategy: "micro-jitter", of a wavefront "micro-jitter+ORDER", or "+wavefront" without one.
-std::string strategy_name(const traces::Provenance&);
 
 std::uint64_t count_rays(const traces::WarpTrace&);
 

@@ -37,8 +37,12 @@ Launches::Launches(const LaunchSettings& settings, const FileNames& outputs, Obs
     warn_of_strategies(captures, observer);
     scene_ = settings.scene.prepare(outputs, observer);
     for (const auto& c : captures) captures_.push_back(std::make_unique<tracer::Capture>(*scene_, c));
-    for (const CaseSettings& one : settings.cases) names_.push_back(one.strategy);
     sources_ = sources_of(captures_);
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        const tracer::StrategyName& given = settings.cases[i].strategy;
+        names_.push_back(to_string(given));
+        sources_[i].strategy.thread_map = given.thread_map;
+    }
 }
 
 std::vector<Json> Launches::subject() const {

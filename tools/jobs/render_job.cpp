@@ -13,7 +13,7 @@ tracer::CaptureSettings RenderJob::capture() const {
     settings.width = size.width;
     settings.height = size.height;
     settings.paths = sampling.paths();
-    settings.strategy = sampling.strategy(strategy.sequence, strategy.strategy, strategy.spp);
+    settings.strategy = sampling.strategy(strategy.sequence, to_string(strategy.strategy), strategy.spp);
     tracer::check_clamp(clamp);
     const tracer::SamplingStrategy check(settings.strategy, tracer::sample_dimensions(settings.paths));
     return settings;

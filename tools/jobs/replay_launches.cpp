@@ -35,7 +35,7 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
         for (const cachesim::Gpu& gpu : gpus) {
             Series& made = series.emplace_back();
             made.scene = p.scene;
-            made.strategy = strategy_name(p);
+            made.strategy = to_string(sources[s].strategy);
             made.sequence = p.sequence;
             made.parameters = p.parameters;
             made.thread_map = p.thread_map;

@@ -100,12 +100,10 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     if (!one.k.empty()) sampling.k = one.k;
     if (!one.mu.empty()) sampling.mu = one.mu;
     tracer::CaptureSettings settings;
-    const std::size_t plus = one.strategy.find('+');
-    const std::string decorrelation = one.strategy.substr(0, plus);
-    const std::string suffix = plus == std::string::npos ? "" : one.strategy.substr(plus + 1);
-    settings.execution.execution =
-        suffix.empty() ? tracer::execution_from(sampling.execution) : tracer::Execution::wavefront;
-    settings.execution.order = suffix.empty() ? sampling.order : suffix == "wavefront" ? "none" : suffix;
+    tracer::check_strategy_name(one.strategy);
+    const std::string& decorrelation = one.strategy.decorrelation;
+    settings.execution =
+        tracer::execution_of(one.strategy, {tracer::execution_from(sampling.execution), sampling.order});
     const bool wavefront = settings.execution.execution == tracer::Execution::wavefront;
     const Resolution size = parse_resolution(sampling.resolution);
     settings.width = size.width;
@@ -114,8 +112,7 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     tracer::check_execution(settings.execution, tracer::integrator_entry(settings.paths.integrator));
     settings.strategy = sampling.strategy(one.sequence, decorrelation, one.spp);
     settings.trace_samples = sampling.trace_samples;
-    const std::string own_map = tracer::find_decorrelation(decorrelation).has_classes ? "classes" : "tile";
-    settings.thread_map = tracer::thread_map_from(sampling.thread_map.empty() ? own_map : sampling.thread_map);
+    settings.thread_map = tracer::thread_map_of(one.strategy, sampling.thread_map);
     settings.program = program_name;
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{} --bounces {}{} "

@@ -8,6 +8,7 @@
 
 #include "tools/jobs/scene_settings.hpp"
 #include "tracer/capture.hpp"
+#include "tracer/strategy_name.hpp"
 
 namespace raycache::tools {
 
@@ -30,8 +31,8 @@ struct SamplingSettings {
     std::uint64_t seed = 1;
 
     std::uint64_t trace_samples = 8;
-    std::string thread_map;                                ///< empty: the strategy's own
-    std::string execution = "megakernel", order = "none";  ///< of a case whose strategy says neither
+    std::string thread_map;                                ///< of a case whose strategy names none; empty: its own
+    std::string execution = "megakernel", order = "none";  ///< of a case whose strategy names no order
 
     /// Throws UsageError for values out of range.
     tracer::PathSettings paths() const;
@@ -41,7 +42,7 @@ struct SamplingSettings {
 
 /// One of the cases that a job compares.
 struct CaseSettings {
-    std::string strategy = "micro-jitter";  ///< a decorrelation, DECORRELATION+ORDER or DECORRELATION+wavefront
+    tracer::StrategyName strategy;
     std::string sequence = "sobol";
     std::uint64_t spp = 64;  ///< N
     std::string k, mu;       ///< instead of SamplingSettings'; empty: those

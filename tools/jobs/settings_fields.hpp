@@ -40,6 +40,17 @@ struct Fields<SamplingSettings> {
                                     Field{"order", &S::order}};
 };
 
+/// A text. What no registry has is refused when the job is run.
+template <>
+struct Codec<tracer::StrategyName> {
+    static Json write(const tracer::StrategyName& name) { return to_string(name); }
+    static void read(const Reader& reader, const Json& json, const std::string& place, tracer::StrategyName& out) {
+        std::string text;
+        reader.read(json, place, text);
+        out = tracer::parse_strategy_name(text);
+    }
+};
+
 template <>
 struct Fields<CaseSettings> {
     using S = CaseSettings;

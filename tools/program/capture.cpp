@@ -12,12 +12,13 @@ struct Options {
     SceneOptions scene;
     SamplingOptions sampling;
     ThreadOptions threads;
-    std::string sequence = "sobol", decorrelation = "micro-jitter", output;
+    std::string sequence = "sobol", strategy = "micro-jitter", output;
     std::uint64_t spp = 64;
 };
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    const CaptureJob job{o->scene, o->sampling, {o->decorrelation, o->sequence, o->spp, {}, {}}, o->output};
+    const CaptureJob job{
+        o->scene, o->sampling, {tracer::parse_strategy_name(o->strategy), o->sequence, o->spp, {}, {}}, o->output};
     const tracer::CaptureSettings settings = capture_settings(job.scene, job.sampling, job.strategy);
     return [o, command, job, settings] {
         warn_of_idle(*command, {&settings, 1});
@@ -37,9 +38,10 @@ void add_capture(Program& program) {
     command->add_option("-o,--output", o->output, "trace to write, or - for stdout")->required()->type_name("FILE.rct");
     command
         ->add_option(
-            "--strategy", o->decorrelation,
-            "decorrelation (see 'raycache list strategies'); NAME+wavefront or NAME+ORDER runs it as a wavefront")
-        ->check([](std::string& name) { check_strategy_name(name, true); });
+            "--strategy", o->strategy,
+            "decorrelation (see 'raycache list strategies'); NAME+wavefront or NAME+ORDER runs it as a wavefront, "
+            "NAME@MAP with that thread map")
+        ->check(strategy_name_check());
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")
         ->choices("sequence", sequence_names());
     add_spp(*command, o->spp, "N, the size of the sample set; it sets mu");

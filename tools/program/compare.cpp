@@ -36,7 +36,7 @@ std::vector<CaseSettings> cases_of(const Options& o) {
         for (const std::uint64_t spp : o.spp)
             for (const std::string& strategy : o.strategies)
                 for (const std::string& k : o.ks) {
-                    const CaseSettings one{strategy, sequence, spp, k, {}};
+                    const CaseSettings one{tracer::parse_strategy_name(strategy), sequence, spp, k, {}};
                     const auto settings = capture_settings(o.scene, o.sampling, one);
                     const tracer::SamplingStrategy made(settings.strategy, tracer::sample_dimensions(settings.paths));
                     if (o.ks.size() == 1 ||
@@ -77,7 +77,7 @@ void add_compare(Program& program) {
     Command* command =
         program.add_subcommand("compare", "Compare strategies, straight from a scene or from trace files");
     o->inputs.add(*command, "trace files");
-    add_strategies(*command, o->strategies, true);
+    add_strategies(*command, o->strategies, {});
     add_sequences(*command, o->sequences);
     add_spps(*command, o->spp, "sizes N of the sample set, separated by commas");
     o->threads.add(*command);
@@ -102,7 +102,8 @@ void add_compare(Program& program) {
          "raycache compare cp.rct mj.rct coherent.rct --gpu gtx-980-ti --gpu h100",
          "raycache compare sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv",
          "raycache compare courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
-         "cranley-patterson+meister,micro-jitter --gpu h100"});
+         "cranley-patterson+meister,micro-jitter --gpu h100",
+         "raycache compare courtyard --strategy cranley-patterson,cranley-patterson@classes,interleaved --gpu h100"});
     command->plan([o, command] { return plan(o, command); });
 }
 

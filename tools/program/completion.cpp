@@ -16,6 +16,7 @@
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
+#include "tracer/simt/thread_map.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -59,7 +60,7 @@ const std::map<std::string, Candidates>& known() {
             {"--sky", {{"auto", "on", "off"}, {}}},
             {"--lights", {{"auto", "bsdf", "nee", "mis"}, {}}},
             {"--execution", {{"megakernel", "wavefront"}, {}}},
-            {"--thread-map", {{"tile", "samples", "classes"}, {}}},
+            {"--thread-map", {names_of(tracer::thread_maps()), {}}},
             {"--by", {{"none", "bounce", "ray", "object"}, {}}},
             {"--format", {{"dinero", "u64", "csv", "accel-sim"}, {}}},
             {"--level", {{"l1", "l2", "l3"}, {}}},

@@ -16,6 +16,8 @@
 namespace raycache::tools {
 namespace {
 
+constexpr tracer::StrategyParts parts{.order = false};
+
 struct Options {
     InputOptions inputs;
     SceneOptions scene;
@@ -68,7 +70,7 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
         job.launches.scene = o->scene;
         job.launches.sampling = o->sampling;
         for (const std::string& strategy : o->strategies)
-            job.launches.cases.push_back({strategy, o->sequence, o->spp, {}, {}});
+            job.launches.cases.push_back({tracer::parse_strategy_name(strategy, parts), o->sequence, o->spp, {}, {}});
     }
     job.check();
     refuse_overwriting(inputs.traces, outputs);
@@ -95,7 +97,7 @@ void add_explain(Program& program) {
     o->inputs.add(*command, "two trace files: BASE and OTHER");
     o->gpu.add_names(*command, "GPU preset or FILE.toml (see 'raycache list gpus')")->required()->count(1);
     o->gpu.add_changes(*command);
-    add_strategies(*command, o->strategies, false)->type_name("BASE,OTHER");
+    add_strategies(*command, o->strategies, parts)->type_name("BASE,OTHER");
     command->add_option("--sequence", o->sequence, "with a scene: the sequence of both")
         ->choices("sequence", sequence_names())
         ->about_scene();

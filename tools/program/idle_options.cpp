@@ -99,6 +99,12 @@ std::string interleave_rule(const Case& c, const Context& context) {
     return unread(Parameter::interleave, c);
 }
 
+std::string thread_map_rule(const Case& c, const Context& context) {
+    if (!context.use.launches) return context.use.without_launches;
+    return context.value("--thread-map") == tracer::to_string(c.thread_map) ? ""
+                                                                            : "the strategy's own @MAP takes its place";
+}
+
 std::string limit_rule(std::uint32_t limit, const Case& c) {
     return limit > c.paths.bounces ? fmt::format("a path has {} bounces at most", c.paths.bounces) : "";
 }
@@ -120,7 +126,7 @@ const std::vector<OptionRule>& rules() {
         {"--interleave", interleave_rule},
         {"--seed", seed_rule},
         {"--trace-samples", trace_samples_rule},
-        {"--thread-map", launches_rule},
+        {"--thread-map", thread_map_rule},
         {"--spatial-splits", launches_rule},
         {"--layout", launches_rule},
         {"--set", launches_rule},

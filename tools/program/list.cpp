@@ -19,6 +19,7 @@
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
+#include "tracer/simt/thread_map.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -46,10 +47,7 @@ std::vector<Topic> all_topics() {
             {"gpus", entries_of(cachesim::gpu_presets())},
             {"layouts", entries_of(tracer::bvh_layouts())},
             {"integrators", entries_of(tracer::integrators())},
-            {"thread-maps",
-             {{"tile", "a warp = 8x4 neighbouring pixels, one sample index"},
-              {"samples", "a warp = one pixel, 32 consecutive sample indices"},
-              {"classes", "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}}},
+            {"thread-maps", entries_of(tracer::thread_maps())},
             {"orders", entries_of(tracer::ray_orders())},
             {"scenes", entries_of(tracer::builtin_scenes())}};
 }

@@ -12,7 +12,6 @@
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene_name.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
-#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -35,26 +34,16 @@ constexpr std::uint64_t most_samples = std::uint64_t{1} << 32;
 std::vector<std::string> strategy_names() { return names_of(tracer::decorrelations()); }
 std::vector<std::string> sequence_names() { return names_of(tracer::sequences()); }
 
-void check_strategy_name(const std::string& name, bool execution) {
-    const std::size_t plus = execution ? name.find('+') : std::string::npos;
-    tracer::find_decorrelation(name.substr(0, plus));
-    if (plus == std::string::npos) return;
-    std::vector<std::string> valid = names_of(tracer::ray_orders());
-    valid.emplace_back("wavefront");
-    const std::string suffix = name.substr(plus + 1);
-    if (std::find(valid.begin(), valid.end(), suffix) == valid.end())
-        throw UsageError(fmt::format("strategy '{}': unknown ray order '{}'; expected one of: {}{}", name, suffix,
-                                     fmt::join(valid, ", "), did_you_mean(suffix, valid)));
+std::function<void(std::string&)> strategy_name_check(tracer::StrategyParts parts) {
+    return [parts](std::string& text) { tracer::check_strategy_name(tracer::parse_strategy_name(text, parts)); };
 }
 
-Option* add_strategies(Command& command, std::vector<std::string>& strategies, bool execution) {
-    const std::string more =
-        "; NAME+wavefront or NAME+ORDER runs one as a wavefront, without sorting or with its rays sorted so";
-    return command
-        .add_option("--strategy", strategies,
-                    "decorrelations, separated by commas (see 'raycache list strategies')" + (execution ? more : ""))
-        ->check([execution](std::string& name) { check_strategy_name(name, execution); })
-        ->about_scene();
+Option* add_strategies(Command& command, std::vector<std::string>& strategies, tracer::StrategyParts parts) {
+    std::string help = "decorrelations, separated by commas (see 'raycache list strategies')";
+    if (parts.order)
+        help += "; NAME+wavefront or NAME+ORDER runs one as a wavefront, without sorting or with its rays sorted so";
+    if (parts.thread_map) help += "; NAME@MAP has a thread map of its own";
+    return command.add_option("--strategy", strategies, help)->check(strategy_name_check(parts))->about_scene();
 }
 
 Option* add_sequences(Command& command, std::vector<std::string>& sequences) {
@@ -180,7 +169,7 @@ void SamplingOptions::add_launches(Command& command) {
                     "tile: a warp = 8x4 pixels, one sample index; samples: a warp = one pixel, 32 sample indices; "
                     "classes: tiles of pixels of one class (--interleave). Default: classes for strategies with pixel "
                     "classes, else tile")
-        ->choices("thread map", {"tile", "samples", "classes"});
+        ->choices("thread map", names_of(tracer::thread_maps()));
     command.group("");
 }
 

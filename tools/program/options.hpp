@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,14 +37,14 @@ struct ThreadOptions {
     std::shared_ptr<void> apply() const;
 };
 
-/// A decorrelation of this name; with `execution` also NAME+wavefront and NAME+ORDER. For Option::check(); throws
-/// UsageError, with the closest name.
-void check_strategy_name(const std::string&, bool execution);
+/// Names of decorrelations.
 std::vector<std::string> strategy_names();
 std::vector<std::string> sequence_names();
 
-/// --strategy, --sequence and --spp where there may be several. `execution`: see check_strategy_name().
-Option* add_strategies(Command&, std::vector<std::string>&, bool execution);
+/// For Option::check(): that every part of the name is known, of those that it may have.
+std::function<void(std::string&)> strategy_name_check(tracer::StrategyParts = {});
+/// --strategy, --sequence and --spp where there may be several.
+Option* add_strategies(Command&, std::vector<std::string>&, tracer::StrategyParts);
 Option* add_sequences(Command&, std::vector<std::string>&);
 Option* add_spps(Command&, std::vector<std::uint64_t>&, const std::string& help);
 /// --spp where there is one.

@@ -26,7 +26,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
     QualityJob job = o->common.job();
     for (const std::string& sequence : o->sequences)
         for (const std::uint64_t spp : o->spp)
-            for (const std::string& strategy : o->strategies) job.cases.push_back({strategy, sequence, spp, {}, {}});
+            for (const std::string& strategy : o->strategies) job.cases.push_back({{strategy}, sequence, spp, {}, {}});
     job.baseline = o->common.baseline_of(o->strategies);
     job.pairs = o->pairs;
     job.equal_time = !o->output.empty() && !o->common.gpu.names.empty();
@@ -64,7 +64,7 @@ void add_quality(Program& program) {
     auto o = std::make_shared<Options>();
     Command* command = program.add_subcommand(
         "quality", "Measure the error of strategies' pictures: its size, how much of it neighbours share, and bias");
-    add_strategies(*command, o->strategies, false);
+    add_strategies(*command, o->strategies, {false, false});
     add_sequences(*command, o->sequences);
     add_spps(*command, o->spp, "samples per pixel N, separated by commas");
     command->add_flag("--pairs", o->pairs,

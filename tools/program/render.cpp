@@ -12,13 +12,13 @@ struct Options {
     SceneOptions scene;
     SamplingOptions sampling;
     ThreadOptions threads;
-    std::string sequence = "sobol", decorrelation = "cranley-patterson", output;
+    std::string sequence = "sobol", strategy = "cranley-patterson", output;
     std::uint64_t spp = 64;
     std::optional<float> exposure, clamp;
 };
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    const RenderJob job{o->scene,    o->sampling, {o->decorrelation, o->sequence, o->spp, {}, {}},
+    const RenderJob job{o->scene,    o->sampling, {{o->strategy}, o->sequence, o->spp, {}, {}},
                         o->exposure, o->clamp,    o->output};
     const tracer::CaptureSettings settings = job.capture();
     return [o, command, job, settings] {
@@ -38,7 +38,7 @@ void add_render(Program& program) {
     command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")
         ->required()
         ->type_name("FILE");
-    command->add_option("--strategy", o->decorrelation, "decorrelation (see 'raycache list strategies')")
+    command->add_option("--strategy", o->strategy, "decorrelation (see 'raycache list strategies')")
         ->choices("strategy", strategy_names());
     command->add_option("--sequence", o->sequence, "sequence (see 'raycache list sequences')")
         ->choices("sequence", sequence_names());

@@ -68,7 +68,7 @@ void ReportOptions::add(Command& command, bool with_baseline) {
         command
             .add_option("--baseline", baseline,
                         "strategy that ratios refer to; default: cranley-patterson where it is compared")
-            ->check([](std::string& name) { check_strategy_name(name, true); });
+            ->check(strategy_name_check());
     json.add(command);
     width.add(command);
     command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});

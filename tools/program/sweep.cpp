@@ -105,7 +105,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
         if (value <= 0) throw UsageError(fmt::format("{} {}; expected a number above 0", option, value));
     QualityJob job = o->common.job();
     const auto add = [&](const std::string& strategy, const std::string& mu) {
-        job.cases.push_back({strategy, o->sequence, o->spp, {}, mu});
+        job.cases.push_back({{strategy}, o->sequence, o->spp, {}, mu});
     };
     for (const double mu : o->mus) add(o->swept, fmt::format("{}", mu));
     std::vector<std::string> others = o->others;

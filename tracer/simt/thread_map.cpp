@@ -17,9 +17,18 @@ constexpr std::uint32_t tiles_per_square = pixels_per_square / traces::warp_lane
 
 }  // namespace
 
+const std::vector<ThreadMapEntry>& thread_maps() {
+    static const std::vector<ThreadMapEntry> all{
+        {ThreadMap::tile, "tile", "a warp = 8x4 neighbouring pixels, one sample index"},
+        {ThreadMap::samples, "samples", "a warp = one pixel, 32 consecutive sample indices"},
+        {ThreadMap::classes, "classes",
+         "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}};
+    return all;
+}
+
 ThreadMap thread_map_from(const std::string& name) {
-    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::classes})
-        if (name == to_string(map)) return map;
+    for (const ThreadMapEntry& entry : thread_maps())
+        if (name == entry.name) return entry.map;
     throw UsageError(fmt::format("unknown thread map '{}'; expected one of: tile, samples, classes", name));
 }
 

@@ -23,6 +23,12 @@ namespace raycache::tracer {
 
 enum class ThreadMap { tile, samples, classes };
 
+struct ThreadMapEntry {
+    ThreadMap map;
+    std::string name, description;
+};
+const std::vector<ThreadMapEntry>& thread_maps();
+
 /// Throws UsageError that lists the valid names.
 ThreadMap thread_map_from(const std::string& name);
 const char* to_string(ThreadMap);
