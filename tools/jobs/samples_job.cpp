@@ -6,7 +6,7 @@ tracer::StrategySettings SamplesJob::settings() const {
     SamplingSettings own = sampling;
     if (!strategy.k.empty()) own.k = strategy.k;
     if (!strategy.mu.empty()) own.mu = strategy.mu;
-    return own.strategy(strategy.sequence, strategy.strategy, strategy.spp);
+    return own.strategy(strategy.sequence, to_string(strategy.strategy), strategy.spp);
 }
 
 SamplesResult run(const SamplesJob& job, Observer& observer) {

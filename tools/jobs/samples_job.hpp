@@ -11,7 +11,7 @@ namespace raycache::tools {
 
 struct SamplesJob {
     SamplingSettings sampling;
-    CaseSettings strategy{"micro-jitter", "halton", 128, {}, {}};
+    CaseSettings strategy{{"micro-jitter"}, "halton", 128, {}, {}};
     std::array<std::uint32_t, 2> dimensions{0, 1};
     std::uint64_t copies = 150;  ///< pixels
 

@@ -30,11 +30,11 @@ struct Options {
 };
 
 SamplesJob job_of(const Options& o) {
-    return {o.sampling, {o.strategy, o.sequence, o.spp, {}, {}}, {o.dimensions[0], o.dimensions[1]}, o.copies};
+    return {o.sampling, {{o.strategy}, o.sequence, o.spp, {}, {}}, {o.dimensions[0], o.dimensions[1]}, o.copies};
 }
 
 SampleUnion make(SamplesJob job, const std::string& strategy, std::optional<double> k) {
-    job.strategy.strategy = strategy;
+    job.strategy.strategy = {strategy};
     if (k) {
         job.sampling.k = fmt::format("{}", *k);
         job.sampling.s = "2";
