@@ -163,6 +163,7 @@ TEST_CASE("A damaged or foreign text is no result") {
     CHECK_THAT(refusal(with("\"spp\":4,\"sector_bytes\":32,", "")), Contains(".spp\" is missing"));
     CHECK_THAT(refusal(with("\"ray\":\"camera\"", "\"ray\":\"lens\"")), Contains("expected one of: camera"));
     CHECK_THAT(refusal(with("raycache ", "raycat ")), Contains("run the job again"));
+    CHECK_THAT(refusal(with("\"levels\":2", "\"levels\":7")), Contains("2 or 3 cache levels"));
 }
 
 }  // namespace

@@ -77,6 +77,8 @@ TEST_CASE("A value of the wrong type is refused in one line that names its key")
         {R"({"job": "replay", "timed": true, "timed": false})", "found \"timed\" twice"},
         {R"({"job": "replay",)", "expected JSON"},
         {R"({"job": "quality", "clamp": 1e999})", "expected JSON"},
+        {R"({"job": "quality", "clamp": 1e300})", "\"clamp\": expected a number"},
+        {R"({"job": "replay", "timed": )" + std::string(100000, '['), "levels of brackets"},
     }));
     const std::string line = refusal_of_job(text);
     CHECK_THAT(line, Contains(place) && Contains("cell 7"));

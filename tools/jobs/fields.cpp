@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "traces/did_you_mean.hpp"
@@ -10,6 +12,8 @@
 
 namespace raycache::tools {
 namespace {
+
+constexpr int most_levels = 32;
 
 /// As it stands in the text, but not the whole of a long one.
 std::string shown(const Json& json) {
@@ -35,7 +39,9 @@ std::string join_places(const std::string& outer, const std::string& key) {
 Json Reader::parse(const std::string& text) const {
     std::vector<std::set<std::string>> keys;  // of the objects that are open
     std::string twice;
-    const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth > most_levels)
+            throw Error(fmt::format("{}: expected at most {} levels of brackets, found more", source_, most_levels));
         if (event == Json::parse_event_t::object_start) keys.emplace_back();
         if (event == Json::parse_event_t::object_end) keys.pop_back();
         if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second && twice.empty())
@@ -75,8 +81,8 @@ std::string Reader::read_text(const Json& json, const std::string& place) const 
     return json.get<std::string>();
 }
 
-double Reader::read_number(const Json& json, const std::string& place) const {
-    if (json.is_number()) return json.get<double>();
+double Reader::read_number(const Json& json, const std::string& place, double most) const {
+    if (json.is_number() && std::fabs(json.get<double>()) <= most) return json.get<double>();
     if (kind_ == Kind::result && json.is_string()) {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         const std::string word = json.get<std::string>();

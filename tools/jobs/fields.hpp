@@ -100,7 +100,8 @@ public:
     /// `source`: what the text is called in messages, such as its file's name.
     Reader(std::string source, Kind kind) : source_(std::move(source)), kind_(kind) {}
 
-    /// A text as JSON: one object, each key once. Throws Error that says where it is not.
+    /// A text as JSON: one object, each key once, not nested deeper than any that this program writes. Throws Error
+    /// that says where it is not.
     Json parse(const std::string& text) const;
 
     /// `place`: the keys that lead to it, such as "launches[2].sample"; empty for the whole.
@@ -112,7 +113,7 @@ public:
 private:
     void check_keys(const Json&, const std::string& place, const std::vector<std::string>& keys) const;
     std::string read_text(const Json&, const std::string& place) const;
-    double read_number(const Json&, const std::string& place) const;
+    double read_number(const Json&, const std::string& place, double most) const;
     std::uint64_t read_whole(const Json&, const std::string& place, std::uint64_t most) const;
     [[noreturn]] void missing(const std::string& place) const;
 
@@ -137,7 +138,7 @@ void Reader::read(const Json& json, const std::string& place, T& out) const {
     } else if constexpr (std::unsigned_integral<T>) {
         out = static_cast<T>(read_whole(json, place, std::numeric_limits<T>::max()));
     } else if constexpr (std::floating_point<T>) {
-        out = static_cast<T>(read_number(json, place));
+        out = static_cast<T>(read_number(json, place, double{std::numeric_limits<T>::max()}));
     } else if constexpr (HasNames<T>) {
         const std::string name = json.is_string() ? json.template get<std::string>() : std::string();
         std::string expected = "one of:";
@@ -151,7 +152,10 @@ void Reader::read(const Json& json, const std::string& place, T& out) const {
         wrong(place, expected, json);
     } else if constexpr (is_optional<T>) {
         out.reset();
-        if (!json.is_null()) read(json, place, out.emplace());
+        if (json.is_null()) return;
+        typename T::value_type value{};
+        read(json, place, value);
+        out = std::move(value);
     } else if constexpr (HasFields<T>) {
         if (!json.is_object()) wrong(place, "an object {…}", json);
         std::apply([&](const auto&... field) { check_keys(json, place, {field.key...}); }, Fields<T>::all);

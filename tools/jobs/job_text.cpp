@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tools/jobs/quality_fields.hpp"
+#include "tools/jobs/result_checks.hpp"
 #include "tools/jobs/version.hpp"
 #include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
@@ -87,7 +88,9 @@ AnyResult parse_result(const std::string& text, const std::string& source) {
         throw Error(fmt::format("{}: expected a result of {}, found one of {}; run the job again", source, program_name,
                                 program.empty() ? "an unknown program" : program));
     json.erase("program");
-    return parse<AnyResult>(reader, std::move(json), source);
+    AnyResult result = parse<AnyResult>(reader, std::move(json), source);
+    check_result(result, source);
+    return result;
 }
 
 }  // namespace raycache::tools
