@@ -80,7 +80,8 @@ std::vector<Case> rough_cases() {
 
 }  // namespace
 
-TEST_CASE("bsdf: a white opaque surface returns all light of a furnace, at every roughness, metallic and index") {
+TEST_CASE("bsdf: a white opaque surface returns all light of a furnace, at every roughness, metallic and index",
+          "[slow]") {
     for (const float roughness : roughnesses)
         for (const float metallic : {0.0F, 0.5F, 1.0F})
             for (const float ior : {1.0F, 1.5F, 2.4F, 0.0F})
@@ -194,7 +195,8 @@ TEST_CASE("bsdf: sampled weights are value over density, densities those of eval
     }
 }
 
-TEST_CASE("bsdf: densities integrate to the share of samples that live, and samples follow them (chi-square)") {
+TEST_CASE("bsdf: densities integrate to the share of samples that live, and samples follow them (chi-square)",
+          "[slow]") {
     constexpr int bands = 16, sectors = 16, per_bin = 24, samples = 200000;
     for (const Case& c : rough_cases())
         for (const float cosine : {0.9F, 0.3F}) {

@@ -154,7 +154,7 @@ TEST_CASE("bvh: spatial splits lower the SAH cost of long triangles and change n
     CHECK(found > 10000);
 }
 
-TEST_CASE("bvh: equal scenes give equal trees, on any number of threads") {
+TEST_CASE("bvh: equal scenes give equal trees, on any number of threads", "[slow]") {
     const Scene scene = soup(20000, 0.1F, 6);
     for (const bool splits : {false, true}) {
         const Bvh first = build_bvh(scene, {4, splits});

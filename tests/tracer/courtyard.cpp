@@ -70,7 +70,7 @@ std::vector<std::size_t> triangles_per_material(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("courtyard stays within five per cent of the wanted triangle count", "[courtyard]") {
+TEST_CASE("courtyard stays within five per cent of the wanted triangle count", "[courtyard][slow]") {
     for (std::uint64_t wanted = small; wanted <= 2'000'000; wanted += wanted / 7) {
         CAPTURE(wanted);
         const Scene scene = courtyard::build(wanted);

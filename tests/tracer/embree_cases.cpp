@@ -102,7 +102,7 @@ TEST_CASE("embree: rays from the geometry in any direction") {
     }
 }
 
-TEST_CASE("embree: scenes times 1e-6 and 1e6, and moved by 1e5") {
+TEST_CASE("embree: scenes times 1e-6 and 1e6, and moved by 1e5", "[slow]") {
     for (const float offset : {0.0F, 1e5F})
         for (const float scale : {1e-6F, 1.0F, 1e6F}) {
             if (scale < 1 && offset > 0) continue;  // nothing is left of it: below
@@ -131,7 +131,7 @@ TEST_CASE("embree: rays of any length from 1e-6 to 1e6 give the same hits at t o
     }
 }
 
-TEST_CASE("embree: degenerate triangles among sound ones") {
+TEST_CASE("embree: degenerate triangles among sound ones", "[slow]") {
     Scene scene = soup(500, 0.4F, 9);
     Random random(10);
     for (int i = 0; i < 500; ++i) {

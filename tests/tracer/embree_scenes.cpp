@@ -63,7 +63,7 @@ void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
 
 }  // namespace
 
-TEST_CASE("embree: hits equal Embree's on a million rays in each built scene") {
+TEST_CASE("embree: hits equal Embree's on a million rays in each built scene", "[slow]") {
     const std::size_t million = 1000000;
     const Camera outside{"outside", {0.1F, 0.2F, 4}, {0, 0, -1}, {0, 1, 0}, 40};
     SECTION("soup of small triangles") {

@@ -78,7 +78,7 @@ TEST_CASE("the file that is mutated below loads whole") {
     CHECK(warnings.size() == 1);  // the clamping sampler
 }
 
-TEST_CASE("a .glb with flipped bytes loads or is refused with an Error") {
+TEST_CASE("a .glb with flipped bytes loads or is refused with an Error", "[slow]") {
     const TempFolder folder;
     const auto whole = rich().glb();
     std::mt19937 random(20240601);
@@ -91,7 +91,7 @@ TEST_CASE("a .glb with flipped bytes loads or is refused with an Error") {
     }
 }
 
-TEST_CASE("a .glb whose JSON has a number, string or member replaced loads or is refused with an Error") {
+TEST_CASE("a .glb whose JSON has a number, string or member replaced loads or is refused with an Error", "[slow]") {
     const TempFolder folder;
     const GltfBuilder builder = rich();
     const json flat = builder.finished().flatten();

@@ -142,7 +142,7 @@ TEST_CASE("lights: bsdf, nee, mis and auto converge to one picture on every kind
     }
 }
 
-TEST_CASE("lights: the modes agree with few bounces, with limits per kind, and under a sky and a sun") {
+TEST_CASE("lights: the modes agree with few bounces, with limits per kind, and under a sky and a sun", "[slow]") {
     Material veil = surface(0, 1);
     veil.alpha_blend = true;
     veil.alpha = 0.4F;
@@ -278,7 +278,7 @@ TEST_CASE("surfaces: pictures of 0 to 64 bounces are finite and grow") {
     }
 }
 
-TEST_CASE("surfaces: a scene a million times smaller or larger gives the same picture") {
+TEST_CASE("surfaces: a scene a million times smaller or larger gives the same picture", "[slow]") {
     for (const Material& ball : {surface(0, 1), surface(0.5F, 0.2F, 0.5F, false)}) {
         const double expected = estimate(PreparedScene(room(ball), {}), limits(4), 24, 64).mean;
         for (const float scale : {1e-6F, 1e-3F, 1e3F, 1e6F}) {

@@ -88,7 +88,8 @@ TEST_CASE("measures: Cranley-Patterson, owen, random and net-micro-jitter pass t
     CHECK(measure("sobol", "micro-jitter", 2, 64, 1).z > measure("sobol", "micro-jitter", 2, 64, 4).z);
 }
 
-TEST_CASE("measures: net-micro-jitter passes the bias test with every sequence that has nets in four dimensions") {
+TEST_CASE("measures: net-micro-jitter passes the bias test with every sequence that has nets in four dimensions",
+          "[slow]") {
     for (const char* sequence : {"sobol", "sobol-owen-4d"})
         for (const std::uint32_t dimensions : {2U, 4U})
             for (const std::uint32_t n : {16U, 64U, 256U}) {
@@ -135,7 +136,8 @@ TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its un
     CHECK(std::fabs(predicted - a * b) > 10 * deviation);  // there is a bias to be predicted
 }
 
-TEST_CASE("measures: neighbours share the error of jitter for s = 2 more than that of jitter for all dimensions") {
+TEST_CASE("measures: neighbours share the error of jitter for s = 2 more than that of jitter for all dimensions",
+          "[slow]") {
     const double pairs = measure("sobol", "micro-jitter", 4, 256, 1, 2).structured(),
                  full = measure("sobol", "micro-jitter", 4, 256, 1, 4).structured();
     CHECK(pairs > full + 0.2);

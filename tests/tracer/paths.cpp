@@ -65,7 +65,7 @@ TEST_CASE("paths: a convex body in a white furnace shows its albedo after one bo
     }
 }
 
-TEST_CASE("paths: inside a glowing sphere radiance is the geometric series of its albedo") {
+TEST_CASE("paths: inside a glowing sphere radiance is the geometric series of its albedo", "[slow]") {
     Scene scene = icosphere(5);
     scene.materials[0].base_color = {0.5F, 0.5F, 0.5F};
     scene.materials[0].emission = {1, 1, 1};

@@ -78,7 +78,7 @@ Coverage cover(Kind kind, int repeats, float reference_scale) {
 
 }  // namespace
 
-TEST_CASE("intervals of RMSE, ratio and mean error hold the truth in 95 of 100 pictures, or more", "[quality]") {
+TEST_CASE("intervals of RMSE, ratio and mean error hold the truth in 95 of 100 pictures, or more", "[quality][slow]") {
     // 300 trials: 0.92 is two and a half standard deviations below 0.95. Never too narrow; too wide is named below.
     for (const int repeats : {1, 2, 4})
         for (const float reference_scale : {0.01F, 0.7F}) {
@@ -105,7 +105,7 @@ TEST_CASE("seeds are not too wide either: with independent pixels 95 of 100, not
     CHECK(c.mean < 0.99);
 }
 
-TEST_CASE("pictures that err as a whole are found by the spread of whole seeds", "[quality]") {
+TEST_CASE("pictures that err as a whole are found by the spread of whole seeds", "[quality][slow]") {
     const Coverage c = cover(Kind::whole, 8, 0.01F);
     CHECK(c.rmse > 0.85);
     CHECK(c.mean > 0.90);

@@ -46,7 +46,7 @@ TEST_CASE("a reference is the same whatever the number of threads", "[quality]")
     CHECK(all.key == single.key);
 }
 
-TEST_CASE("the half difference is as large as the reference's error against a better one", "[quality]") {
+TEST_CASE("the half difference is as large as the reference's error against a better one", "[quality][slow]") {
     ReferenceSettings settings = small(), better = small();
     settings.paths.bounces = better.paths.bounces = 1;
     settings.spp = 32;

@@ -127,7 +127,7 @@ TEST_CASE("box test: every box that the exact ray enters is hit, for four millio
     CHECK(extra < outside);  // these rays pass within rounding error of the box, so many count as hits
 }
 
-TEST_CASE("box test: every box that the exact ray enters is hit, for awkward numbers") {
+TEST_CASE("box test: every box that the exact ray enters is hit, for awkward numbers", "[slow]") {
     Random random(2);
     std::uint64_t missed = 0, entered = 0;
     for (int i = 0; i < 4000000; ++i) {

@@ -199,11 +199,11 @@ TEST_CASE("triangle test: two triangles with a common edge leave no gap, in any 
     CHECK(gaps == 0);
 }
 
-TEST_CASE("triangle test: a closed mesh leaks none of a million rays at its edges, vertices and anywhere") {
+TEST_CASE("triangle test: a closed mesh leaks none of a million rays at its edges, vertices and anywhere", "[slow]") {
     CHECK(leaks(icosphere(4), 1, {0, 0, 0}, 1000000, 1) == 0);
 }
 
-TEST_CASE("triangle test: a closed mesh times 1e-6 or 1e6, or moved by 1e5, leaks no ray") {
+TEST_CASE("triangle test: a closed mesh times 1e-6 or 1e6, or moved by 1e5, leaks no ray", "[slow]") {
     const auto check = [](float scale, Vec3 offset, int level) {
         INFO("scale " << scale << ", offset " << offset.x << ", level " << level);
         CHECK(leaks(moved(icosphere(level), scale, offset), scale, offset, 200000, 7) == 0);

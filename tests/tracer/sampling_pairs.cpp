@@ -28,7 +28,8 @@ void check_refused(const StrategySettings& settings, const std::string& words, s
 
 }  // namespace
 
-TEST_CASE("sampling: every pair is defined, except nets in base 2 for sequences that are none; those say why") {
+TEST_CASE("sampling: every pair is defined, except nets in base 2 for sequences that are none; those say why",
+          "[slow]") {
     const std::set<std::string> no_nets{"halton", "halton-scrambled", "r2", "random"}, pairs{"sobol-owen-02", "pmj02"};
     const std::set<std::string> need_nets{"uniform-jitter", "owen", "net-micro-jitter", "net-micro-jitter-fast"};
     for (const auto& sequence : sequences())
@@ -62,7 +63,7 @@ TEST_CASE("sampling: strategies that depend on a pixel's place are refused witho
     }
 }
 
-TEST_CASE("sampling: every defined pair works at the last index, at N = 2^31 and in dimension 1023") {
+TEST_CASE("sampling: every defined pair works at the last index, at N = 2^31 and in dimension 1023", "[slow]") {
     for (const auto& sequence : sequences())
         for (const auto& decorrelation : decorrelations())
             for (const std::uint64_t n : {std::uint64_t{1}, std::uint64_t{1} << 31, std::uint64_t{1} << 32}) {

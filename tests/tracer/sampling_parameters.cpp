@@ -48,7 +48,7 @@ const std::vector<Change> changes{
 
 }  // namespace
 
-TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other") {
+TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other", "[slow]") {
     for (const DecorrelationEntry& entry : decorrelations())
         for (const bool with_mu : {false, true})
             for (const Change& change : changes) {

@@ -262,7 +262,7 @@ TEST_CASE("sampling: shuffle_index permutes each block of 2^m indices onto one a
         }
 }
 
-TEST_CASE("sampling: dimensions of different sets are independent, in every sequence but the plain ones") {
+TEST_CASE("sampling: dimensions of different sets are independent, in every sequence but the plain ones", "[slow]") {
     for (const std::string name : {"sobol-owen-02", "sobol-owen-4d", "pmj02", "r2", "random"}) {
         for (const auto& [a, b] : {std::pair{0U, 4U}, {1U, 9U}, {5U, 1022U}}) {
             // Over the seeds: points of one index are random in both dimensions. 512 seeds x 128 indices.

@@ -22,7 +22,7 @@ StrategySettings strategy(const std::string& sequence, const std::string& decorr
 
 }  // namespace
 
-TEST_CASE("sampling: to_unit_float never gives 1, where u * 2^-32 does for 128 inputs") {
+TEST_CASE("sampling: to_unit_float never gives 1, where u * 2^-32 does for 128 inputs", "[slow]") {
     int naive_ones = 0;
     for (std::uint64_t u = 0xFFFFF000U; u < 1ULL << 32; ++u) {
         naive_ones += static_cast<float>(static_cast<std::uint32_t>(u)) * 0x1p-32F == 1.0F;
@@ -50,7 +50,7 @@ TEST_CASE("sampling: to_unit_float is below 1 and never falls for all 2^32 input
     CHECK(good);
 }
 
-TEST_CASE("sampling: a strategy is its sequence followed by its decorrelation") {
+TEST_CASE("sampling: a strategy is its sequence followed by its decorrelation", "[slow]") {
     for (const auto& sequence : sequences()) {
         for (const auto& decorrelation : decorrelations()) {
             auto settings = strategy(sequence.name, decorrelation.name, 64);

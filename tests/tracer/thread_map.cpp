@@ -19,7 +19,7 @@ constexpr std::pair<std::uint32_t, std::uint32_t> sizes[] = {{1, 1},  {17, 33}, 
 
 }  // namespace
 
-TEST_CASE("thread map: tile gives every pixel exactly once, whatever the size of the picture") {
+TEST_CASE("thread map: tile gives every pixel exactly once, whatever the size of the picture", "[slow]") {
     for (const auto& [width, height] : sizes) {
         const LaunchGrid grid(ThreadMap::tile, width, height, 8);
         CHECK(grid.samples_per_launch() == 1);
@@ -65,7 +65,7 @@ TEST_CASE("thread map: eight warps in a row make a square of 16x16 pixels, squar
         }
 }
 
-TEST_CASE("thread map: samples gives a warp one pixel and 32 consecutive samples, every pixel once") {
+TEST_CASE("thread map: samples gives a warp one pixel and 32 consecutive samples, every pixel once", "[slow]") {
     for (const auto& [width, height] : sizes) {
         const LaunchGrid grid(ThreadMap::samples, width, height, 64);
         CHECK(grid.samples_per_launch() == 32);

@@ -243,7 +243,7 @@ TEST_CASE("wavefront: the header says so, and a megakernel's says nothing new") 
     for (const traces::Region& region : wave.header().regions) CHECK(region.base % (2U << 20U) == 0);
 }
 
-TEST_CASE("wavefront: a file has the same warps, whatever the number of threads") {
+TEST_CASE("wavefront: a file has the same warps, whatever the number of threads", "[slow]") {
     const PreparedScene scene(room(), {});
     for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples}) {
         CaptureSettings settings = picture("meister-two-point", map);
