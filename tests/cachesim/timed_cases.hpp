@@ -75,8 +75,9 @@ inline Launch launch_of(const std::vector<std::vector<std::vector<std::uint32_t>
     return launch;
 }
 
-inline TimedStatistics timed(const Gpu& gpu, const Launch& launch, const Idealised& ideal = {}) {
-    TimedReplay replay(gpu, launch.regions, 0, ideal);
+inline TimedStatistics timed(const Gpu& gpu, const Launch& launch, const Idealised& ideal = {},
+                             PortPath path = PortPath::fast) {
+    TimedReplay replay(gpu, launch.regions, 0, ideal, path);
     for (const auto& warp : launch.warps) replay.push(warp);
     return replay.finish();
 }

@@ -205,6 +205,52 @@ TEST_CASE("in time, a kernel waits for the one before, and streamed bytes take t
     CHECK(wrote.warp_accesses == one.warp_accesses);
 }
 
+TEST_CASE(
+    "in time as without, the caches of a CPU keep what they have from kernel to kernel, those of a GPU L2 alone") {
+    Gpu gpu = tiny_gpu();
+    gpu.levels[0].ways = 4;
+    gpu.levels[1].ways = 16;
+    Timing t;
+    t.clock_mhz = 1000;
+    t.schedulers = 1;
+    t.l1_latency = 5;
+    t.l2_latency = t.l2_far_latency = 15;
+    t.l3_latency = 60;
+    t.dram_latency = 200;
+    t.launch_cycles = 100;
+    t.l1_mshrs = t.l2_mshrs = t.l3_mshrs = 16;
+    t.l1_mshr_merges = t.l2_mshr_merges = t.l3_mshr_merges = 8;
+    t.dram_gb_s = 64;
+    gpu.timing = t;
+    for (const bool cpu : {false, true}) {
+        if (cpu) gpu.levels.push_back(gpu.levels[1]);
+        for (const std::uint32_t fill : {32u, 128u}) {
+            gpu.levels[0].fill_bytes = fill;  // a CPU's L1 may still fetch when the last warp has ended
+            TimedReplay timed(gpu, buffers, 0);
+            Replay counted(gpu, buffers, 0);
+            for (int kernel = 0; kernel < 3; ++kernel) {
+                if (kernel > 0) {
+                    timed.end_kernel();
+                    counted.end_kernel();
+                }
+                std::vector<Access> accesses;
+                for (std::uint32_t line = 0; line < 8; ++line)
+                    accesses.push_back({get, {4 * (line < 3 ? line : 3 + (line + static_cast<unsigned>(kernel)) % 8)}});
+                timed.push(warp(accesses));
+                counted.push(warp(accesses));
+            }
+            const TimedStatistics times = timed.finish();
+            const Counters counts = counted.finish().all();
+            CAPTURE(cpu, fill);
+            CHECK(times.dram_sectors == counts.dram_sectors);
+            if (fill > 32) continue;
+            CHECK(times.l2.requests() == counts.l2_sectors);
+            if (cpu) CHECK(times.l3.requests() == counts.l3_sectors);
+            CHECK(times.l1.misses() == counts.l2_sectors);
+        }
+    }
+}
+
 TEST_CASE("requests of a wavefront cannot be followed") {
     struct Sink final : RequestSink {
         bool wants(std::size_t, unsigned) const override { return true; }

@@ -47,9 +47,7 @@ public:
     std::uint64_t sectors() const { return sectors_; }
 
 private:
-    static bool streams(const traces::Region& r) {
-        return traces::role_of(r.kind).access != traces::AccessType::read;
-    }
+    static bool streams(const traces::Region& r) { return traces::role_of(r.kind).access != traces::AccessType::read; }
 
     std::uint64_t sectors_of(const traces::Region& region, const std::uint32_t* elements, unsigned lanes) {
         if (traces::is_stream(region.kind))

@@ -25,6 +25,7 @@ public:
     TimedCache(const CacheGeometry&, unsigned number, std::uint32_t registers);
 
     SectorCache& lines() { return lines_; }
+    const SectorCache& lines() const { return lines_; }
     MissRegisters& registers() { return registers_; }
 
     /// Takes in what arrives by `now`.
@@ -43,6 +44,19 @@ public:
     /// sector on its way. There must be a free register.
     std::uint32_t send_for(std::uint32_t line, std::uint32_t sector, std::uint64_t set, std::uint32_t& entry,
                            Cycle now);
+
+    /// Sends for what a fill brings beside a sector that has just set off, as far as there are registers: the absent
+    /// sectors of the same group of `fill_sectors`. Calls sent(register, sector) for each.
+    template <class Sent>
+    void send_for_neighbours(std::uint32_t fill_sectors, std::uint32_t line, std::uint32_t sector, std::uint64_t set,
+                             std::uint32_t& entry, Cycle now, const Sent& sent) {
+        const std::uint32_t first = sector / fill_sectors * fill_sectors;
+        for (std::uint32_t s = first; s < first + fill_sectors && !registers_.full(); ++s) {
+            if (entry != none && (lines_[entry].present >> s & 1)) continue;
+            if (find_pending(line, s, entry) != none) continue;
+            if (const std::uint32_t number = send_for(line, s, set, entry, now); number != none) sent(number, s);
+        }
+    }
 
     /// What was unknown is known now; not before the last drain(). Returns how long the register is taken.
     Cycle set_arrival(std::uint32_t number, Cycle arrival) {

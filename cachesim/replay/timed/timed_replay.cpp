@@ -5,6 +5,7 @@
 #include <deque>
 #include <utility>
 
+#include "cachesim/replay/group_numbers.hpp"
 #include "cachesim/replay/launch_checks.hpp"
 #include "cachesim/replay/timed/streamed_traffic.hpp"
 #include "cachesim/replay/timed/timed_sm.hpp"
@@ -12,21 +13,31 @@
 namespace raycache::cachesim {
 
 struct TimedReplay::Impl {
-    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal)
+    Impl(const Gpu& gpu, const std::vector<traces::Region>& all_regions, std::uint32_t sample, const Idealised& ideal,
+         PortPath path)
         : regions(checked(all_regions)),
           ids(regions, checked_timed(gpu).l1().line_bytes),
-          rules(gpu, all_regions, ids, ideal),  // the links, too
+          rules(gpu, all_regions, ids, ideal, path),  // the links, too
           memory(rules),
           streamed(regions, gpu.l1().sector_bytes) {
-        total.sample = sample;
-        make_sms();
-    }
-
-    void make_sms() {
-        sms.clear();
+        batch_begin.counts.sample = sample;
         for (std::uint32_t sm = 0; sm < rules.gpu.sms; ++sm)
             sms.emplace_back(rules, ids, static_cast<std::uint16_t>(sm));
     }
+
+    /// Everything that was counted up to a point in time.
+    struct State {
+        TimedStatistics counts;  ///< but for what follows from these and the time
+        std::uint64_t streamed = 0;
+        Cycle registers = 0;  ///< MemorySide::waiting()
+        Cycle time = 0;       ///< since the launch of the first kernel
+    };
+    State state(Cycle time) const;
+    TimedStatistics between(const State& from, const State& to) const;
+    void turn_to(std::uint32_t batch, Cycle time);
+    /// Since the launch of the first kernel; a kernel's own launch counts.
+    Cycle here() const { return placed == 0 ? launched : now + rules.timing.launch_cycles; }
+
     void place_cta();
     void run_window();
     void run_all() {
@@ -34,6 +45,10 @@ struct TimedReplay::Impl {
         all_placed = true;
         while (!idle()) run_window();
         all_placed = false;
+    }
+    /// A CPU's caches get what they fetch ahead of the end of a kernel.
+    bool fetches_ahead() const {
+        return std::any_of(sms.begin(), sms.end(), [](const TimedSm& sm) { return sm.fetches_ahead(); });
     }
     void skip_idle_windows();
     Cycle last_end() const {
@@ -59,28 +74,94 @@ struct TimedReplay::Impl {
     StreamedTraffic streamed;
     std::deque<TimedSm> sms;
     Cycle now = 0;
-    Cycle began = 0;  ///< the kernel
+    Cycle began = 0;     ///< the kernel
+    Cycle launched = 0;  ///< the kernel, since the launch of the first one
     std::vector<WarpPointer> cta;
     std::uint64_t placed = 0;
     std::vector<FreeSlot> free;  ///< earliest last
     bool all_placed = false;     ///< no CTA of the kernel waits for a slot
-    TimedStatistics total;
+    std::uint64_t rays = 0;      ///< of CTAs that no SM runs
+
+    std::uint32_t wanted = 0, of_cta = 0, running = 0;  ///< batches: of the next warp, of the CTA, of this cycle
+    std::uint32_t last_batch = 0;
+    bool has_warps = false;                ///< the one that is counted
+    bool empty_batch = true;               ///< the last batch has no warp as yet
+    std::uint64_t streamed_placed = 0;     ///< sectors streamed by CTAs that were placed
+    State batch_begin;                     ///< of the one that is counted
+    std::vector<TimedStatistics> batches;  ///< that have ended
 };
+
+TimedReplay::Impl::State TimedReplay::Impl::state(Cycle time) const {
+    State s;
+    s.counts.sample = batch_begin.counts.sample;
+    s.counts.rays = rays;
+    for (const TimedSm& sm : sms) s.counts += sm.statistics(now);
+    s.counts.instructions += s.counts.loads;
+    s.counts.issue.busy += static_cast<double>(s.counts.loads);
+    (rules.three_levels() ? s.counts.l3 : s.counts.l2) = memory.answers();
+    s.counts.dram_sectors = memory.dram_sectors() + streamed_placed;
+    s.streamed = streamed_placed;
+    s.registers = memory.waiting();
+    s.time = time;
+    return s;
+}
+
+TimedStatistics TimedReplay::Impl::between(const State& from, const State& to) const {
+    const Gpu& gpu = rules.gpu;
+    TimedStatistics t = to.counts;
+    t -= from.counts;
+    const double cycles_per_sector = memory.dram_cycles_per_sector();
+    const double streamed_cycles =
+        static_cast<double>(to.streamed - from.streamed) * cycles_per_sector / rules.timing.dram_channels;
+    t.cycles = to.time - from.time + static_cast<Cycle>(std::ceil(streamed_cycles));
+    t.seconds = static_cast<double>(t.cycles) / (rules.timing.clock_mhz * 1e6);
+    const auto asked = static_cast<double>((rules.three_levels() ? t.l3 : t.l2).requests());
+    const std::uint64_t l1s = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
+    t.warp_slots = std::uint64_t{gpu.sms} * rules.cta_slots * gpu.warps_per_cta;
+    const LevelTiming last = rules.timing.level(gpu.levels.size() - 1);
+    t.peak_l2_gb_s = last.bytes_per_cycle * gpu.levels.back().slices * rules.timing.clock_mhz * 1e-3;
+    t.peak_dram_gb_s = rules.timing.dram_gb_s;
+    t.issue.copies = std::uint64_t{gpu.sms} * rules.timing.schedulers;
+    t.l1_port.copies = l1s;
+    t.l1_tags = {t.l1_tags.busy * rules.tag_cost, l1s};
+    t.l1_data = {static_cast<double>(t.l1.requests()) * rules.data_cost, l1s};
+    t.l1_mshrs.copies = l1s * rules.timing.l1_mshrs;
+    t.l2_mshrs = {static_cast<double>(to.registers - from.registers),
+                  std::uint64_t{gpu.levels.back().slices} * last.mshrs};
+    t.crossbar = {asked * memory.crossbar_cycles_per_sector(), gpu.sms};
+    t.l2_slices = {asked * memory.slice_cycles_per_sector(), gpu.levels.back().slices};
+    t.dram = {static_cast<double>(t.dram_sectors) * cycles_per_sector, rules.timing.dram_channels};
+    return t;
+}
+
+/// From this time on it is another batch, or none, that is counted.
+void TimedReplay::Impl::turn_to(std::uint32_t batch, Cycle time) {
+    if (batch == running) return;
+    const State reached = state(time);
+    if (has_warps && running != not_counted) batches.push_back(between(batch_begin, reached));
+    batch_begin = reached;
+    running = batch;
+    has_warps = false;
+}
 
 void TimedReplay::Impl::place_cta() {
     const bool has_access =
         std::any_of(cta.begin(), cta.end(), [](const WarpPointer& w) { return !w->elements.empty(); });
     const std::uint64_t at_first = std::uint64_t{rules.cta_slots} * sms.size();
+    if (has_access && placed >= at_first)
+        while (free.empty()) run_window();
+    turn_to(of_cta, here());
+    has_warps = true;
+    streamed_placed = streamed.sectors();
     if (!has_access) {
         for (const WarpPointer& warp : cta)
             for (const traces::Record& record : warp->records)
-                if (!record.is_access()) total.rays += record.lanes();
+                if (!record.is_access()) rays += record.lanes();
     } else if (placed < at_first) {
         const std::uint64_t round = placed / sms.size();
         sms[placed % sms.size()].place(static_cast<unsigned>(round), cta, began + round);
         ++placed;
     } else {
-        while (free.empty()) run_window();
         const FreeSlot slot = free.back();
         free.pop_back();
         sms[slot.sm].place(slot.slot, cta, std::max(slot.time + 1, now));
@@ -118,57 +199,49 @@ void TimedReplay::Impl::skip_idle_windows() {
 }
 
 TimedReplay::TimedReplay(const Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
-                         const Idealised& ideal)
-    : impl_(std::make_unique<Impl>(gpu, regions, sample, ideal)) {}
+                         const Idealised& ideal, PortPath path)
+    : impl_(std::make_unique<Impl>(gpu, regions, sample, ideal, path)) {}
 TimedReplay::~TimedReplay() = default;
 TimedReplay::TimedReplay(TimedReplay&&) noexcept = default;
 
 void TimedReplay::push(std::shared_ptr<const traces::WarpTrace> warp) {
-    check(*warp, impl_->regions);
-    impl_->cta.push_back(impl_->streamed.take(std::move(warp)));
-    if (impl_->cta.size() == impl_->rules.gpu.warps_per_cta) impl_->place_cta();
+    Impl& i = *impl_;
+    check(*warp, i.regions);
+    i.cta.push_back(i.streamed.take(std::move(warp)));
+    i.of_cta = i.wanted;
+    if (i.wanted != not_counted) i.empty_batch = false;
+    if (i.cta.size() == i.rules.gpu.warps_per_cta) i.place_cta();
 }
 
 void TimedReplay::end_kernel() {
     Impl& i = *impl_;
     i.run_all();
-    i.began = i.now = std::max(i.now, i.last_end() + i.rules.timing.launch_cycles);
-    for (const TimedSm& sm : i.sms) i.total += sm.statistics;
-    i.make_sms();
+    while (i.fetches_ahead() || !i.memory.idle()) i.run_window();
+    i.launched = i.last_end() + i.rules.timing.launch_cycles;
+    i.began = i.now = std::max(i.now, i.launched);
+    for (TimedSm& sm : i.sms) sm.end_kernel();
     i.placed = 0;
     i.free.clear();
 }
 
+void TimedReplay::count_from_here() {
+    Impl& i = *impl_;
+    if (!std::exchange(i.empty_batch, true)) ++i.last_batch;
+    i.wanted = i.last_batch;
+}
+
+void TimedReplay::count_until_here() { impl_->wanted = not_counted; }
+
 TimedStatistics TimedReplay::finish() {
     Impl& i = *impl_;
     i.run_all();
-    TimedStatistics& t = i.total;
-    for (const TimedSm& sm : i.sms) t += sm.statistics;
-    const Gpu& gpu = i.rules.gpu;
-    t.instructions += t.loads;
-    t.issue.busy += static_cast<double>(t.loads);
-    const double streamed =
-        static_cast<double>(i.streamed.sectors()) * i.memory.dram_cycles_per_sector() / i.rules.timing.dram_channels;
-    t.cycles = i.last_end() + i.rules.timing.launch_cycles + static_cast<Cycle>(std::ceil(streamed));
-    t.seconds = static_cast<double>(t.cycles) / (i.rules.timing.clock_mhz * 1e6);
-    (i.rules.three_levels() ? t.l3 : t.l2) = i.memory.answers();
-    t.dram_sectors = i.memory.dram_sectors() + i.streamed.sectors();
-    const auto asked = static_cast<double>(i.memory.answers().requests());
-    const std::uint64_t l1s = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
-    t.warp_slots = std::uint64_t{gpu.sms} * i.rules.cta_slots * gpu.warps_per_cta;
-    const LevelTiming last = i.rules.timing.level(gpu.levels.size() - 1);
-    t.peak_l2_gb_s = last.bytes_per_cycle * gpu.levels.back().slices * i.rules.timing.clock_mhz * 1e-3;
-    t.peak_dram_gb_s = i.rules.timing.dram_gb_s;
-    t.issue.copies = std::uint64_t{gpu.sms} * i.rules.timing.schedulers;
-    t.l1_port.copies = l1s;
-    t.l1_tags = {t.l1_tags.busy * i.rules.tag_cost, l1s};
-    t.l1_data = {static_cast<double>(t.l1.requests()) * i.rules.data_cost, l1s};
-    t.l1_mshrs.copies = l1s * i.rules.timing.l1_mshrs;
-    t.l2_mshrs = {static_cast<double>(i.memory.waiting()), std::uint64_t{gpu.levels.back().slices} * last.mshrs};
-    t.crossbar = {asked * i.memory.crossbar_cycles_per_sector(), gpu.sms};
-    t.l2_slices = {asked * i.memory.slice_cycles_per_sector(), gpu.levels.back().slices};
-    t.dram = {static_cast<double>(t.dram_sectors) * i.memory.dram_cycles_per_sector(), i.rules.timing.dram_channels};
-    return t;
+    // The end of the last batch; of a launch that was not counted to its end it came before.
+    i.turn_to(not_counted, i.last_end() + i.rules.timing.launch_cycles);
+    TimedStatistics all = i.between(i.batch_begin, i.batch_begin);  // of no time
+    for (const TimedStatistics& batch : i.batches) all += batch;
+    return all;
 }
+
+const std::vector<TimedStatistics>& TimedReplay::batches() const { return impl_->batches; }
 
 }  // namespace raycache::cachesim

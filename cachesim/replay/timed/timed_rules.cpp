@@ -28,11 +28,12 @@ std::uint32_t whole(double number) {
 }  // namespace
 
 TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions, const LineIds& line_ids,
-                       const Idealised& idealised)
+                       const Idealised& idealised, PortPath port_path)
     : gpu(g),
       ids(line_ids),
       timing(*g.timing),
       ideal(idealised),
+      path(port_path),
       sectors_per_line(g.l1().line_bytes / g.l1().sector_bytes),
       line_of_sector(std::countr_zero(sectors_per_line)),
       cta_slots(std::max(1u, g.warps_per_sm / g.warps_per_cta)),

@@ -24,9 +24,16 @@ struct Idealised {
     bool full_warps = false;          ///< consecutive visits of a warp to objects of one kind fill up its lanes
 };
 
+/// How loads pass the ports of L1s: with the same results.
+enum class PortPath {
+    fast,  ///< what an earlier load of the visit found is not looked for again
+    rule,  ///< every load by the rule for any load: what tests hold the fast path against
+};
+
 struct TimedRules {
     /// `ids` number the lines of the regions and must outlive this object.
-    TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds& ids, const Idealised&);
+    TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds& ids, const Idealised&,
+               PortPath = PortPath::fast);
 
     bool three_levels() const { return gpu.levels.size() == 3; }
     /// Whether instructions go one by one through collectors. Where nothing is ever taken there is nothing to wait for.
@@ -42,6 +49,7 @@ struct TimedRules {
     const LineIds& ids;
     Timing timing;
     Idealised ideal;
+    PortPath path;
     std::vector<LineMap> maps;                ///< of each level
     std::vector<LoadShape> shapes;            ///< of each region
     std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads

@@ -25,8 +25,8 @@ Cycle TimedSm::ready_time(std::uint32_t number) const {
     if (visit.next < visit.loads) return 0;
     const std::uint32_t instruction = visit.next - visit.loads, chains = rules_.timing.dependent_chains;
     const auto data = [&](std::uint32_t load) {
-        const Data& d = data_[number * data_per_flight_ + load];
-        return d.asked && d.unresolved == 0 ? d.arrival + rules_.timing.l1_latency - issue_to_port : never;
+        const LoadData& d = data_[number * data_per_flight_ + load];
+        return d.known() ? d.arrival + rules_.timing.l1_latency - issue_to_port : never;
     };
     if (instruction == visit.instructions) {
         Cycle time = 0;
@@ -67,48 +67,43 @@ void TimedSm::wake(std::uint32_t number, Cycle time) {
 void TimedSm::open_visit(std::uint32_t number, Cycle time) {
     InstructionFlow::Visit& visit = flow_->visits[number];
     visit = {};
-    visit.instructions = shading(warp_of(number));
+    visit.instructions = shading(number);
     if (visit.instructions == 0) {
         if (!begin_visit(number)) {
             end_flight(number, time);
             return;
         }
         const Flight& flight = flights_[number];
-        visit.loads = visit.unknown = flight.shape->loads;
+        visit.loads = visit.unknown = flight.loads;
         visit.instructions = flight.instructions;
-        for (std::uint32_t load = 0; load < visit.loads; ++load) {
-            Data& data = data_[number * data_per_flight_ + load];
-            data.arrival = 0;
-            data.unresolved = 0;
-            data.asked = false;
-        }
+        for (std::uint32_t load = 0; load < visit.loads; ++load)
+            data_[number * data_per_flight_ + load] = {0, 0, number, false};
     }
     wake(number, time);
 }
 
 bool TimedSm::issue_one(unsigned number, Cycle time) {
     InstructionFlow& flow = *flow_;
-    Scheduler& scheduler = schedulers_[number];
+    WarpScheduler& scheduler = schedulers_[number];
     auto& ready = flow.ready[number];
     std::uint64_t able = 0;
     for (const auto kind : {OperandCollectors::arithmetic, OperandCollectors::load})
         if (flow.collectors.takes(number, kind)) able |= ready[kind];
     if (!able) return false;
-    const unsigned bit = pick(scheduler, able);
-    scheduler.last = bit;
+    const unsigned bit = scheduler.pick(able);
     const bool load = ready[OperandCollectors::load] >> bit & 1;
     ready[load] &= ~(std::uint64_t{1} << bit);
-    const std::uint32_t chosen = scheduler.flight_of[bit];
+    const std::uint32_t chosen = scheduler.flight(bit);
     InstructionFlow::Visit& visit = flow.visits[chosen];
     Flight& flight = flights_[chosen];
-    statistics.issue.busy += 1;
+    counts_.issue.busy += 1;
     if (load) {
-        ++statistics.loads;
+        ++counts_.loads;
         flight.first_issue = std::min(flight.first_issue, time);
         flow.collectors.issue(number, chosen, visit.next, OperandCollectors::load);
     } else {
         const std::uint32_t chains = rules_.timing.dependent_chains, instruction = visit.next - visit.loads;
-        ++statistics.instructions;
+        ++counts_.instructions;
         flow.results[chosen * chains + instruction % chains] = never;
         flow.collectors.issue(number, chosen, instruction, OperandCollectors::arithmetic);
     }
@@ -144,25 +139,24 @@ bool TimedSm::run_units(Cycle now) {
 bool TimedSm::feed_ports(Cycle now, Cycle end) {
     OperandCollectors& collectors = flow_->collectors;
     bool moved = false;
-    for (std::size_t i = 0; i < l1s_.size(); ++i) {
-        L1& l1 = l1s_[i];
-        if (!l1.queue.empty() && l1.port_free <= now) {
-            l1.port_free = serve_port(static_cast<std::uint8_t>(i), now, end);
+    for (Port& port : ports_) {
+        if (!port.empty() && port.free() <= now) {
+            serve(port, now, end);
             moved = true;
         }
-        if (!l1.queue.empty() || l1.port_free > now + 1) continue;
+        if (!port.empty() || port.free() > now + 1) continue;
         const OperandCollectors::Instruction* oldest = nullptr;
         unsigned from = 0;
         for (std::uint64_t left = collectors.collected(OperandCollectors::load); left; left &= left - 1) {
             const OperandCollectors::Instruction& at = collectors.collected(first(left), OperandCollectors::load);
-            if (at.flight / per_warp_ % l1s_.size() != i || (oldest && oldest->age < at.age)) continue;
+            if (&port_of(at.flight) != &port || (oldest && oldest->age < at.age)) continue;
             oldest = &at;
             from = first(left);
         }
         if (!oldest) continue;
         const OperandCollectors::Instruction at = collectors.take(from, OperandCollectors::load);
-        l1.queue.push({at.flight, at.number, at.flight * data_per_flight_ + at.number});
-        l1.port_free = now + 1;
+        port.push({at.flight, at.number, at.flight * data_per_flight_ + at.number});
+        port.hold(now + 1);
         moved = true;
     }
     return moved;
@@ -174,13 +168,13 @@ Cycle TimedSm::next_in_flow(Cycle end) const {
     Cycle next = std::min(end, events_.time());
     for (std::uint64_t left = collectors.collected(OperandCollectors::arithmetic); left; left &= left - 1)
         next = std::min(next, flow_->unit_free[first(left)]);
-    for (const L1& l1 : l1s_) {
-        if (!l1.queue.empty())
-            next = std::min(next, l1.port_free);
+    for (const Port& port : ports_) {
+        if (!port.empty())
+            next = std::min(next, port.free());
         else if (collectors.collected(OperandCollectors::load))
-            next = std::min(next, l1.port_free - 1);
+            next = std::min(next, port.free() - 1);
     }
-    if (private_ && !private_->queue.empty()) next = 0;
+    if (fetches_ahead()) next = 0;
     return std::max(next, now_ + 1);
 }
 
@@ -193,7 +187,7 @@ void TimedSm::run_flow(Cycle end) {
         }
         bool moved = run_units(now_);
         moved |= feed_ports(now_, end);
-        if (private_ && !private_->queue.empty()) serve_private(now_);
+        if (private_) serve_private(now_);
         moved |= flow_->collectors.advance();
         for (unsigned s = 0; s < count; ++s) moved |= issue_one(static_cast<unsigned>((s + now_) % count), now_);
         now_ = moved ? now_ + 1 : next_in_flow(end);

@@ -5,30 +5,62 @@
 
 namespace raycache::cachesim {
 
+namespace {
+
+/// Calls use(mine, other's) for every counter of the two.
+template <class Use>
+void for_each_counter(LevelAnswers& a, const LevelAnswers& b, const Use& use) {
+    use(a.hits, b.hits);
+    use(a.merges, b.merges);
+    use(a.line_misses, b.line_misses);
+    use(a.sector_misses, b.sector_misses);
+}
+
+template <class Use>
+void for_each_counter(TimedStatistics& a, const TimedStatistics& b, const Use& use) {
+    for (const auto count : {&TimedStatistics::cycles, &TimedStatistics::rays, &TimedStatistics::warp_accesses,
+                             &TimedStatistics::lane_accesses, &TimedStatistics::instructions, &TimedStatistics::loads,
+                             &TimedStatistics::dram_sectors, &TimedStatistics::visit_cycles, &TimedStatistics::warps,
+                             &TimedStatistics::warp_cycles})
+        use(a.*count, b.*count);
+    for (const auto level : {&TimedStatistics::l1, &TimedStatistics::l2, &TimedStatistics::l3})
+        for_each_counter(a.*level, b.*level, use);
+    for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
+                                &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
+                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs})
+        use((a.*resource).busy, (b.*resource).busy);
+    use(a.seconds, b.seconds);
+}
+
+constexpr auto add = [](auto& mine, const auto& others) { mine += others; };
+constexpr auto take_away = [](auto& mine, const auto& others) { mine -= others; };
+
+}  // namespace
+
+LevelAnswers& LevelAnswers::operator+=(const LevelAnswers& other) {
+    for_each_counter(*this, other, add);
+    return *this;
+}
+
+LevelAnswers& LevelAnswers::operator-=(const LevelAnswers& other) {
+    for_each_counter(*this, other, take_away);
+    return *this;
+}
+
 TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
-    cycles += other.cycles;
-    seconds += other.seconds;
-    rays += other.rays;
-    warp_accesses += other.warp_accesses;
-    lane_accesses += other.lane_accesses;
-    instructions += other.instructions;
-    loads += other.loads;
-    l1 += other.l1;
-    l2 += other.l2;
-    l3 += other.l3;
-    dram_sectors += other.dram_sectors;
-    visit_cycles += other.visit_cycles;
-    warps += other.warps;
-    warp_cycles += other.warp_cycles;
+    for_each_counter(*this, other, add);
     warp_slots = other.warp_slots ? other.warp_slots : warp_slots;
     peak_l2_gb_s = std::max(peak_l2_gb_s, other.peak_l2_gb_s);
     peak_dram_gb_s = std::max(peak_dram_gb_s, other.peak_dram_gb_s);
     for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
                                 &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
-                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs}) {
-        (this->*resource).busy += (other.*resource).busy;
+                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs})
         (this->*resource).copies = (other.*resource).copies;
-    }
+    return *this;
+}
+
+TimedStatistics& TimedStatistics::operator-=(const TimedStatistics& before) {
+    for_each_counter(*this, before, take_away);
     return *this;
 }
 

@@ -15,19 +15,15 @@ struct LevelAnswers {
 
     std::uint64_t requests() const { return hits + merges + line_misses + sector_misses; }
     std::uint64_t misses() const { return line_misses + sector_misses; }
-    LevelAnswers& operator+=(const LevelAnswers& other) {
-        hits += other.hits;
-        merges += other.merges;
-        line_misses += other.line_misses;
-        sector_misses += other.sector_misses;
-        return *this;
-    }
+    LevelAnswers& operator+=(const LevelAnswers&);
+    LevelAnswers& operator-=(const LevelAnswers&);
     bool operator==(const LevelAnswers&) const = default;
 };
 
+/// One batch of a launch (timed_replay.hpp): all of it, unless a replay is told otherwise.
 struct TimedStatistics {
     std::uint32_t sample = 0;  ///< first sample index of the launch
-    std::uint64_t cycles = 0;  ///< of the SM clock, from the launch to the end of the last warp
+    std::uint64_t cycles = 0;  ///< of the SM clock; of a whole launch: to the end of the last warp
     double seconds = 0;        ///< cycles / clock
     std::uint64_t rays = 0;
     std::uint64_t warp_accesses = 0, lane_accesses = 0;
@@ -65,6 +61,8 @@ struct TimedStatistics {
 
     /// Launches one after the other on the same GPU.
     TimedStatistics& operator+=(const TimedStatistics&);
+    /// What was counted since: of `before`, an earlier state of the same counters. Leaves what is no counter.
+    TimedStatistics& operator-=(const TimedStatistics& before);
 };
 
 }  // namespace raycache::cachesim

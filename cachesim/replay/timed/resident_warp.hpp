@@ -1,0 +1,47 @@
+// A warp that is resident: what it reads next, record by record, vector by vector.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "cachesim/replay/timed/cycle.hpp"
+#include "cachesim/replay/timed/timed_rules.hpp"
+#include "traces/record.hpp"
+
+namespace raycache::cachesim {
+
+class ResidentWarp {
+public:
+    /// From its first record on.
+    void begin(std::shared_ptr<const traces::WarpTrace>, Cycle since);
+    bool resident() const { return trace_ != nullptr; }
+    Cycle since() const { return since_; }
+    void end() { trace_.reset(); }
+
+    /// Instructions before the next access, for the rays that begin there.
+    std::uint32_t shading(const TimedRules&);
+
+    /// What one visit reads.
+    struct Access {
+        std::uint32_t region = 0;
+        std::uint32_t mask = 0;  ///< active lanes
+        unsigned lanes = 0;      ///< how many
+        const std::uint32_t* elements = nullptr;
+        std::uint32_t leaf_instructions = 0;
+    };
+    /// Takes the next access, which stands before no ray that begins; none if there is none.
+    std::optional<Access> next(const TimedRules&);
+
+private:
+    std::uint32_t leaf(const TimedRules&, std::uint32_t region, unsigned lanes);
+
+    std::shared_ptr<const traces::WarpTrace> trace_;
+    const traces::Record *next_ = nullptr, *end_ = nullptr;
+    const std::uint32_t* elements_ = nullptr;  ///< of `next_`, from the first lane left on
+    std::uint32_t left_ = 0;                   ///< lanes of `next_` that have not had their turn; 0: none has
+    bool among_triangles_ = false;             ///< the last step was to triangles (LeafStarts)
+    Cycle since_ = 0;
+};
+
+}  // namespace raycache::cachesim
