@@ -27,7 +27,7 @@ public:
     };
 
     /// At most `count` sectors of `entries` lines at once.
-    MissRegisters(std::uint32_t count, std::size_t entries);
+    MissRegisters(std::uint32_t count, std::size_t entries) : count_(count), of_entry_(entries, none) {}
 
     bool full() const { return taken_ == count_; }
     bool empty() const { return taken_ == 0; }
@@ -51,7 +51,13 @@ public:
     }
 
     /// The sector is there, and nobody waits.
-    void give_back(std::uint32_t number);
+    void give_back(std::uint32_t number) {
+        std::uint32_t* link = &of_entry_[registers_[number].entry];
+        while (*link != number) link = &registers_[*link].next;
+        *link = registers_[number].next;
+        registers_.give_back(number);
+        --taken_;
+    }
 
     /// `who` is to be told when the arrival of the register's sector is known. What these numbers mean, the owner of
     /// the cache says.

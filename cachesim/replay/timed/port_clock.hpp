@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "cachesim/gpus/timing.hpp"
@@ -17,7 +16,9 @@ public:
     static constexpr bool counts_tags = true;
 
     TagClock(const Timing& timing, std::uint32_t sector_bytes)
-        : tags_per_cycle_(timing.tags_per_cycle), bytes_per_cycle_(timing.l1_bytes_per_cycle), bytes_(sector_bytes) {}
+        : full_(static_cast<std::uint64_t>(std::clamp(timing.l1_bytes_per_cycle * unit, 1.0, most))),
+          sector_(std::uint64_t{sector_bytes} * unit),
+          tags_per_cycle_(timing.tags_per_cycle) {}
 
     /// Not before `time`. `new_line`: it lies in another line than the sector before.
     Cycle ready(std::uint32_t /*sector*/, bool new_line, Cycle time) const {
@@ -30,8 +31,8 @@ public:
             data_cycle_ = time;
             data_used_ = 0;
         }
-        data_used_ += bytes_;
-        if (data_used_ >= bytes_per_cycle_ * (1 - rounding)) end_data_cycle();
+        data_used_ += sector_;
+        if (data_used_ >= full_) end_data_cycle();
         if (!new_line) return;
         if (time > tag_cycle_) {
             tag_cycle_ = time;
@@ -44,19 +45,24 @@ public:
     }
 
 private:
-    static constexpr double rounding = 1e-6;  ///< of a cycle
+    /// Parts of a byte, so that rates need not be whole, and the most bytes a cycle: more than a load asks for.
+    static constexpr std::uint32_t unit = 1u << 20;
+    static constexpr double most = 0x1p62;
 
     void end_data_cycle() {
-        const double cycles = std::floor(data_used_ / bytes_per_cycle_ + rounding);
-        data_cycle_ += static_cast<Cycle>(cycles);
-        data_used_ = std::max(0.0, data_used_ - cycles * bytes_per_cycle_);
+        ++data_cycle_;
+        data_used_ -= full_;
+        if (data_used_ < full_) [[likely]]
+            return;
+        data_cycle_ += data_used_ / full_;
+        data_used_ %= full_;
     }
 
-    std::uint32_t tags_per_cycle_;
-    double bytes_per_cycle_, bytes_;        ///< bytes_: of a sector
+    std::uint64_t full_, sector_;           ///< of a cycle, of a sector: parts of bytes
+    std::uint64_t data_used_ = 0;           ///< of data_cycle_
     Cycle data_cycle_ = 0, tag_cycle_ = 0;  ///< the first that has something left
-    double data_used_ = 0;                  ///< bytes of it
-    std::uint32_t tags_used_ = 0;           ///< tags of it
+    std::uint32_t tags_used_ = 0;           ///< of tag_cycle_
+    std::uint32_t tags_per_cycle_;
 };
 
 /// L1Port::banks. A bank gives one sector a cycle.

@@ -17,13 +17,6 @@ void ResidentWarp::begin(std::shared_ptr<const traces::WarpTrace> trace, Cycle s
     since_ = since;
 }
 
-std::uint32_t ResidentWarp::shading(const TimedRules& rules) {
-    std::uint32_t starts = 0;
-    for (; next_ != end_ && !next_->is_access(); ++next_) ++starts;
-    if (starts > 0) among_triangles_ = false;
-    return starts * rules.timing.shading_instructions;
-}
-
 /// Instructions that the next access, by so many lanes, takes for a leaf that begins there.
 std::uint32_t ResidentWarp::leaf(const TimedRules& rules, std::uint32_t region, unsigned lanes) {
     const LeafStarts& leaves = *rules.leaves;

@@ -20,7 +20,12 @@ public:
     void end() { trace_.reset(); }
 
     /// Instructions before the next access, for the rays that begin there.
-    std::uint32_t shading(const TimedRules&);
+    std::uint32_t shading(const TimedRules& rules) {
+        std::uint32_t starts = 0;
+        for (; next_ != end_ && !next_->is_access(); ++next_) ++starts;
+        if (starts > 0) among_triangles_ = false;
+        return starts * rules.timing.shading_instructions;
+    }
 
     /// What one visit reads.
     struct Access {
