@@ -53,7 +53,12 @@ COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Thos
 
 def quality_command(row, settings):
     """The command that measures this row's picture against the baseline's, as it would be typed."""
-    words = ["raycache quality", settings.get("scene") or row["scene"]]
+    inputs = settings.get("inputs") or []
+    scene = settings.get("scene") or (inputs[0] if len(inputs) == 1 else None)
+    if not scene:  # traces: a built-in scene's name holds what it was made with, "courtyard(detail=50000)"
+        name, detail = re.fullmatch(r"(.*?)(?:\(detail=(\d+)\))?", row["scene"]).groups()
+        scene, settings = name, {"detail": detail, **{key: value for key, value in settings.items() if value}}
+    words = ["raycache quality", scene]
     for option in ("detail", "camera", "eye", "look_at", "fov"):
         if settings.get(option) not in (None, "", 0):
             words.append(f"--{option.replace('_', '-')} {settings[option]}")

@@ -32,7 +32,7 @@ class ReportPage(ProgramTest):
         found = self.lead(self.page(report))
         self.assertTrue(found.startswith("On a simulated gtx-980-ti, micro-jitter with N = 64 is predicted to render 1.23 ±0.06 times as "
                                          "fast as cranley-patterson, and reads 31 ±4 % less from L2."), found)
-        self.assertIn("raycache quality courtyard", found)
+        self.assertIn("raycache quality courtyard --detail 50000 ", found)
         row["speed_up"] = estimate(1.01, 0.056)
         found = self.lead(self.page(report))
         self.assertIn("reads 31 ±4 % less from L2 than cranley-patterson, but that makes no certain difference in predicted time.", found)
