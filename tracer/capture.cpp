@@ -27,12 +27,12 @@ CaptureSettings checked(CaptureSettings settings) {
     check_size(settings.height, "height");
     check(settings.paths);
     check_execution(settings.execution, integrator_entry(settings.paths.integrator));
-    settings.strategy.parameters.width = settings.width;
+    settings.strategy.samples.width = settings.width;
     return settings;
 }
 
 std::vector<std::uint32_t> choose_launches(const CaptureSettings& settings, std::uint32_t samples_per_launch) {
-    const DecorrelationSettings& p = settings.strategy.parameters;
+    const SampleSet& p = settings.strategy.samples;
     const std::uint64_t groups = (p.spp + samples_per_launch - 1) / samples_per_launch;
     const std::uint64_t wanted = (settings.trace_samples + samples_per_launch - 1) / samples_per_launch;
     std::vector<std::uint32_t> first = choose_sample_indices(groups, wanted, p.seed);
@@ -66,8 +66,8 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
     p.parameters = strategy.parameters();
     p.thread_map = grid.name();
     p.layout = scene.layout();
-    p.spp = settings.strategy.parameters.spp;
-    p.seed = settings.strategy.parameters.seed;
+    p.spp = settings.strategy.samples.spp;
+    p.seed = settings.strategy.samples.seed;
     p.width = settings.width;
     p.height = settings.height;
     p.bounces = settings.paths.bounces;
@@ -83,7 +83,7 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
       settings_(checked(settings)),
       strategy_(settings_.strategy, sample_dimensions(settings_.paths)),
       camera_(scene.camera(), settings.width, settings.height),
-      grid_(settings.thread_map, settings.width, settings.height, settings.strategy.parameters.spp,
+      grid_(settings.thread_map, settings.width, settings.height, settings.strategy.samples.spp,
             settings.strategy.parameters.interleave) {
     header_.provenance = make_provenance(scene, settings_, grid_, strategy_);
     header_.regions = make_regions(scene);
@@ -92,8 +92,8 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
     if (is_wavefront()) plan_wavefront();
     for (const std::uint32_t first : header_.launches) {
         auto& points = base_points_.emplace_back();
-        const std::uint64_t end = std::min<std::uint64_t>(std::uint64_t{first} + grid_.samples_per_launch(),
-                                                          settings.strategy.parameters.spp);
+        const std::uint64_t end =
+            std::min<std::uint64_t>(std::uint64_t{first} + grid_.samples_per_launch(), settings.strategy.samples.spp);
         for (std::uint64_t i = first; i < end; ++i) points.push_back(strategy_.base_point(i));
     }
 }

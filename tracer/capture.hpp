@@ -23,7 +23,7 @@ namespace raycache::tracer {
 struct CaptureSettings {
     std::uint32_t width = 512, height = 512;  ///< pixels, 1 … 16384 each
     PathSettings paths;
-    StrategySettings strategy;  ///< strategy.parameters.spp is N
+    StrategySettings strategy;  ///< strategy.samples.spp is N
     /// How many of the N sample indices are traced: a seeded random subset, ascending, the same for every strategy with
     /// this N. With the `samples` thread map whole groups of 32 consecutive indices are chosen instead, rounded up.
     std::uint64_t trace_samples = 8;

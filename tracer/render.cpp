@@ -45,10 +45,10 @@ void check_clamp(std::optional<float> clamp) {
 Image render(const PreparedScene& scene, const RenderSettings& settings,
              const std::function<void(std::uint64_t paths)>& progress) {
     StrategySettings of_picture = settings.strategy;
-    of_picture.parameters.width = settings.width;
+    of_picture.samples.width = settings.width;
     const SamplingStrategy strategy(of_picture, sample_dimensions(settings.paths));
     const CameraRays camera(scene.camera(), settings.width, settings.height);
-    const std::uint64_t spp = settings.strategy.parameters.spp;
+    const std::uint64_t spp = settings.strategy.samples.spp;
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
 
     scene.embree();  // built here, not by whichever worker comes first

@@ -15,7 +15,7 @@ namespace raycache::tracer {
 struct RenderSettings {
     std::uint32_t width = 512, height = 512;  ///< pixels
     PathSettings paths;
-    StrategySettings strategy;  ///< all N = strategy.parameters.spp samples are taken
+    StrategySettings strategy;  ///< all N = strategy.samples.spp samples are taken
     /// No channel of one sample's radiance above this: brighter samples are scaled down, their colour kept. None: no
     /// clamp. It biases the picture, darker, and takes fireflies away.
     std::optional<float> clamp{};

@@ -46,8 +46,8 @@ inline tracer::CaptureSettings capture_settings(const std::string& strategy, con
     settings.trace_samples = trace_samples;
     settings.strategy.sequence = sequence;
     settings.strategy.decorrelation = strategy;
-    settings.strategy.parameters.spp = spp;
-    settings.strategy.parameters.seed = 1;
+    settings.strategy.samples.spp = spp;
+    settings.strategy.samples.seed = 1;
     settings.strategy.parameters.k = 1;
     return settings;
 }

@@ -78,7 +78,7 @@ TEST_CASE("with one sample and K = 1 micro-jitter saves nothing", "[slow]") {
     std::vector<Traffic> rotated(seeds), jittered(seeds);
     tbb::parallel_for(std::uint64_t{0}, seeds, [&](std::uint64_t i) {
         auto settings = capture_settings("cranley-patterson", "sobol", 1, 1);
-        settings.strategy.parameters.seed = i + 1;
+        settings.strategy.samples.seed = i + 1;
         rotated[i] = measure(scene, settings).front();
         settings.strategy.decorrelation = "micro-jitter";
         jittered[i] = measure(scene, settings).front();

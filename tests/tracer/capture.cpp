@@ -26,8 +26,8 @@ CaptureSettings small_picture(ThreadMap map = ThreadMap::tile) {
     settings.width = 40;
     settings.height = 24;
     settings.thread_map = map;
-    settings.strategy.parameters.spp = 64;
-    settings.strategy.parameters.seed = 5;
+    settings.strategy.samples.spp = 64;
+    settings.strategy.samples.seed = 5;
     settings.trace_samples = 3;
     settings.program = "raycache test";
     settings.command = "trace soup";
@@ -81,7 +81,7 @@ TEST_CASE("capture: with the samples map launches are whole groups of 32 samples
     CHECK(Capture(scene, settings).header().launches == std::vector<std::uint32_t>{0, 32});
     settings.trace_samples = 1;
     CHECK(Capture(scene, settings).header().launches.size() == 1);
-    settings.strategy.parameters.spp = 40;
+    settings.strategy.samples.spp = 40;
     settings.trace_samples = 64;
     const Capture odd(scene, settings);  // the second group has 8 samples
     REQUIRE(odd.header().launches == std::vector<std::uint32_t>{0, 32});
@@ -147,7 +147,7 @@ TEST_CASE("capture: settings out of range are refused in one line") {
     refused([](CaptureSettings& s) { s.width = 0; }, "width of 0");
     refused([](CaptureSettings& s) { s.height = 16385; }, "height of 16385");
     refused([](CaptureSettings& s) { s.paths.bounces = 65; }, "--bounces 65");
-    refused([](CaptureSettings& s) { s.strategy.parameters.spp = 0; }, "");
+    refused([](CaptureSettings& s) { s.strategy.samples.spp = 0; }, "");
     refused([](CaptureSettings& s) { s.trace_samples = 0; }, "");
     refused([](CaptureSettings& s) { s.strategy.sequence = "none"; }, "sobol");
     refused([](CaptureSettings& s) { s.strategy.decorrelation = "none"; }, "micro-jitter");

@@ -60,7 +60,7 @@ TEST_CASE("scenes of any size and cameras at any place within the limits make a 
                 const PreparedScene prepared(scene, {});
                 RenderSettings settings;
                 settings.width = settings.height = 4;
-                settings.strategy.parameters.spp = 2;
+                settings.strategy.samples.spp = 2;
                 settings.paths.bounces = 3;
                 const Image image = render(prepared, settings, {});
                 INFO("size " << size << ", distance " << distance << ", field of view " << fov);

@@ -114,7 +114,7 @@ TEST_CASE("independent render: the Cornell box is that of a naive path tracer, h
         settings.paths.bounces = bounces;
         settings.paths.lights = lights;
         settings.strategy.decorrelation = "cranley-patterson";
-        settings.strategy.parameters.spp = 16384;
+        settings.strategy.samples.spp = 16384;
         const Image ours = render(prepared, settings, {});
         double total = 0, expected_total = 0, total_variance = 0;
         int beyond = 0;

@@ -60,8 +60,8 @@ TEST_CASE("integrators: a picture is that of the integrator which its settings n
         RenderSettings settings;
         settings.width = settings.height = 16;
         settings.paths.integrator = entry.name;
-        settings.strategy.parameters.spp = 1;
-        settings.strategy.parameters.width = 16;
+        settings.strategy.samples.spp = 1;
+        settings.strategy.samples.width = 16;
         const Image image = render(scene, settings, {});
         const SamplingStrategy strategy(settings.strategy, entry.dimensions(settings.paths));
         const CameraRays camera(scene.camera(), 16, 16);

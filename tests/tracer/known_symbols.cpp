@@ -29,7 +29,7 @@ CaptureSettings picture() {
     settings.width = 80;
     settings.height = 56;
     settings.trace_samples = 2;
-    settings.strategy.parameters.spp = 64;
+    settings.strategy.samples.spp = 64;
     return settings;
 }
 

@@ -36,7 +36,7 @@ CaptureSettings picture() {
     settings.width = 48;
     settings.height = 32;
     settings.trace_samples = 2;
-    settings.strategy.parameters.spp = 16;
+    settings.strategy.samples.spp = 16;
     return settings;
 }
 

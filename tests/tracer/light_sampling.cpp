@@ -21,8 +21,8 @@ Estimate estimate(const PreparedScene& scene, const PathSettings& paths, std::ui
     const auto traversal = make_traversal(scene, recorder);
     StrategySettings settings;
     settings.decorrelation = "random";
-    settings.parameters.spp = samples;
-    settings.parameters.seed = 1 + static_cast<std::uint64_t>(paths.lights);
+    settings.samples.spp = samples;
+    settings.samples.seed = 1 + static_cast<std::uint64_t>(paths.lights);
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), size, size);
     PathIntegrator integrator({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, *traversal});

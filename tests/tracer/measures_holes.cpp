@@ -67,7 +67,7 @@ double pairwise_mean_square(const Points& points, double w) {
 
 StrategySettings micro_jitter(const char* sequence, std::uint32_t n, double k) {
     StrategySettings settings{sequence, "micro-jitter", {}};
-    settings.parameters.spp = n;
+    settings.samples.spp = n;
     settings.parameters.k = k;
     return settings;
 }
@@ -140,7 +140,7 @@ TEST_CASE("measures: the density of a window as wide as everything, and of equal
     CHECK(everywhere.min == 1);
     CHECK(everywhere.mean_square == 1);
     StrategySettings net{"sobol-owen-4d", "net-micro-jitter", {}};
-    net.parameters.spp = 256;
+    net.samples.spp = 256;
     const auto window = jitter_window(net, 2, 0);
     REQUIRE(window);
     CHECK(window->width < one);
@@ -153,7 +153,7 @@ TEST_CASE("measures: the density of a window as wide as everything, and of equal
 TEST_CASE("measures: a strategy's window is where its values lie") {
     for (const char* name : {"micro-jitter", "scrambling-distance", "net-micro-jitter", "uniform-jitter", "coherent"}) {
         StrategySettings settings{"sobol", name, {}};
-        settings.parameters.spp = 64;
+        settings.samples.spp = 64;
         const auto window = jitter_window(settings, 4, 1);
         REQUIRE(window);
         const SamplingStrategy strategy(settings, 4);

@@ -15,8 +15,8 @@ namespace {
 FieldError measure(const char* sequence, const char* decorrelation, std::uint32_t dimensions, std::uint32_t n,
                    double k = 2.5, unsigned s = 2) {
     StrategySettings settings{sequence, decorrelation, {}};
-    settings.parameters.spp = n;
-    settings.parameters.seed = 1;
+    settings.samples.spp = n;
+    settings.samples.seed = 1;
     settings.parameters.k = k;
     settings.parameters.s = s;
     return summarise(measure_scenes(dimensions == 2 ? scenes_2d() : edges_4d(), dimensions, n,
@@ -61,7 +61,7 @@ TEST_CASE("measures: every test scene's integral equals a fine quadrature") {
             CHECK(sum / (side * side) == Approx(scene->integral(u, 1 - u)).margin(1.5e-3));
         }
     StrategySettings settings{"sobol-owen-4d", "coherent", {}};
-    settings.parameters.spp = 1U << 18;
+    settings.samples.spp = 1U << 18;
     const SamplingStrategy points(settings, 4);
     std::vector<double> sums(edges_4d().size());
     for (std::uint32_t i = 0; i < 1U << 18; ++i) {
@@ -104,9 +104,9 @@ TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its un
     constexpr std::uint32_t n = 16, pixels = 200'000;
     constexpr double a = 0.62, b = 0.68;
     StrategySettings settings{"sobol", "micro-jitter", {}};
-    settings.parameters.spp = n;
+    settings.samples.spp = n;
     settings.parameters.k = 1;
-    const double mu = effective_mu(settings.parameters);
+    const double mu = effective_mu(settings.parameters, n);
     const SamplingStrategy strategy(settings, 2);
     const auto inside = [mu](double x, double limit) {
         double length = 0;
@@ -159,8 +159,8 @@ TEST_CASE("measures: clamping and reflecting at the border, and a new xi for eve
     CHECK(mse(JitterVariant::per_sample) > 2 * wrap);
     // The variant "wrap" is the strategy itself.
     StrategySettings settings{"sobol", "micro-jitter", {}};
-    settings.parameters.spp = 256;
-    settings.parameters.seed = 1;
+    settings.samples.spp = 256;
+    settings.samples.seed = 1;
     settings.parameters.mu = 0.125;
     std::vector<double> a(512), b(512);
     StrategyPoints(settings, 2).fill(77, a);

@@ -46,7 +46,7 @@ Vec3 trace_pictures(const PreparedScene& scene, Traversal& traversal, std::uint3
     constexpr std::uint32_t spp = 4096;
     StrategySettings settings;
     settings.decorrelation = "random";
-    settings.parameters.spp = spp;
+    settings.samples.spp = spp;
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), size, size);
     PathIntegrator integrator({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal});

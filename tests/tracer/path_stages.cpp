@@ -44,7 +44,7 @@ TEST_CASE("paths: lanes that change places at every vertex give the radiance of 
     paths.lights = LightSampling::mis;
     StrategySettings settings;
     settings.decorrelation = "random";
-    settings.parameters.spp = 4;
+    settings.samples.spp = 4;
     const SamplingStrategy strategy(settings, path_dimensions(paths.bounces));
     const CameraRays camera(scene.camera(), 32, 32);
     NullRecorder recorder;

@@ -61,7 +61,7 @@ TEST_CASE("the half difference is as large as the reference's error against a be
 
 TEST_CASE("a clamp scales samples down to its value, keeps their colour and is refused unless above 0", "[quality]") {
     RenderSettings settings{24, 16, {}, {}, {}};
-    settings.strategy.parameters.spp = 1;
+    settings.strategy.samples.spp = 1;
     const Image free = render(courtyard(), settings, {});
     settings.clamp = 0.25F;
     const Image clamped = render(courtyard(), settings, {});
@@ -226,8 +226,8 @@ TEST_CASE("less than two samples and seeds of the reference are refused", "[qual
 TEST_CASE("an independent pair gets random's numbers, the others keep theirs", "[quality]") {
     StrategySettings settings;
     settings.decorrelation = "coherent";
-    settings.parameters.spp = 16;
-    settings.parameters.seed = 5;
+    settings.samples.spp = 16;
+    settings.samples.seed = 5;
     const SamplingStrategy plain(settings, 10);
     settings.independent_pair = 2;
     const SamplingStrategy with(settings, 10);

@@ -15,8 +15,8 @@ SamplingStrategy strategy(const std::string& decorrelation, std::uint64_t spp, C
                           std::optional<double> mu = {}) {
     StrategySettings settings;
     settings.decorrelation = decorrelation;
-    settings.parameters.spp = spp;
-    settings.parameters.seed = 3;
+    settings.samples.spp = spp;
+    settings.samples.seed = 3;
     settings.parameters.cycles = cycles;
     settings.parameters.mu = mu;
     return {settings, 8};

@@ -19,14 +19,23 @@ constexpr std::uint32_t half = 0x80000000U;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-DecorrelationSettings with_mu(double mu) {
-    DecorrelationSettings settings;
+/// What make_decorrelation() is given beside a name.
+struct Given : DecorrelationSettings, SampleSet {};
+
+std::unique_ptr<Decorrelation> make(const std::string& name, const Given& given = {}) {
+    return make_decorrelation(name, given, given);
+}
+
+double effective_mu(const Given& given) { return effective_mu(given, given.spp); }
+
+Given with_mu(double mu) {
+    Given settings;
     settings.mu = mu;
     return settings;
 }
 
-DecorrelationSettings with_formula(double k, std::uint64_t n, unsigned s = 2) {
-    DecorrelationSettings settings;
+Given with_formula(double k, std::uint64_t n, unsigned s = 2) {
+    Given settings;
     settings.k = k;
     settings.s = s;
     settings.spp = n;
@@ -53,25 +62,25 @@ void check_equal_up_to_shift(const Decorrelation& a, const Decorrelation& b, std
         [&](auto x, auto p, auto i, auto d) { REQUIRE(a.apply(x, p, i, d) == b.apply(x, p, i, d) + shift); });
 }
 
-void check_refused(const DecorrelationSettings& settings, const std::string& words) {
+void check_refused(const Given& settings, const std::string& words) {
     for (const auto& entry : decorrelations()) {
-        CHECK_THROWS_AS(make_decorrelation(entry.name, settings), UsageError);
-        CHECK_THROWS_WITH(make_decorrelation(entry.name, settings), Catch::Contains(words) && !Catch::Contains("\n"));
+        CHECK_THROWS_AS(make(entry.name, settings), UsageError);
+        CHECK_THROWS_WITH(make(entry.name, settings), Catch::Contains(words) && !Catch::Contains("\n"));
     }
 }
 
 }  // namespace
 
 TEST_CASE("sampling: coherent gives every pixel the base point") {
-    const auto coherent = make_decorrelation("coherent", {});
+    const auto coherent = make("coherent", {});
     for_many_places([&](auto x, auto p, auto i, auto d) { REQUIRE(coherent->apply(x, p, i, d) == x); });
     CHECK(coherent->parameters().empty());
 }
 
 TEST_CASE("sampling: Cranley-Patterson adds the pixel's offset modulo 1, the same for every sample") {
-    DecorrelationSettings settings;
+    Given settings;
     settings.seed = 9;
-    const auto rotation = make_decorrelation("cranley-patterson", settings);
+    const auto rotation = make("cranley-patterson", settings);
     const HashKey key(9, HashPurpose::pixel_offset);
     for_many_places([&](auto x, auto p, auto i, auto d) {
         REQUIRE(rotation->apply(x, p, i, d) == static_cast<std::uint32_t>(x + pixel_offset(key, p, d)));
@@ -80,7 +89,7 @@ TEST_CASE("sampling: Cranley-Patterson adds the pixel's offset modulo 1, the sam
 }
 
 TEST_CASE("sampling: random differs for every pixel, sample and dimension, and ignores the base point") {
-    const auto random = make_decorrelation("random", {});
+    const auto random = make("random", {});
     std::set<std::uint32_t> seen;
     for (std::uint32_t p = 0; p < 16; ++p) {
         for (std::uint32_t i = 0; i < 16; ++i) {
@@ -95,7 +104,7 @@ TEST_CASE("sampling: random differs for every pixel, sample and dimension, and i
 
 TEST_CASE("sampling: micro-jitter moves a point by less than mu/2 to either side, the same for every sample") {
     for (const double mu : {0.5, 0.1, 0.01, 1e-6}) {
-        const auto jitter = make_decorrelation("micro-jitter", with_mu(mu));
+        const auto jitter = make("micro-jitter", with_mu(mu));
         double lowest = 0;
         double highest = 0;
         for (std::uint32_t p = 0; p < 4096; ++p) {
@@ -114,7 +123,7 @@ TEST_CASE("sampling: micro-jitter moves a point by less than mu/2 to either side
 
 TEST_CASE("sampling: symmetric micro-jitter at Sobol point 0 wraps with probability 1/2 in each dimension") {
     const auto sobol = make_sequence("sobol");
-    const auto jitter = make_decorrelation("micro-jitter", with_formula(2.5, 1024));
+    const auto jitter = make("micro-jitter", with_formula(2.5, 1024));
     constexpr std::uint32_t pixels = 65536;
     for (const std::uint32_t d : {0U, 1U, 2U, 25U}) {
         std::uint32_t wrapped = 0;
@@ -124,20 +133,19 @@ TEST_CASE("sampling: symmetric micro-jitter at Sobol point 0 wraps with probabil
 }
 
 TEST_CASE("sampling: mu = 0, K = 0, a denormal mu and a mu that rounds to 0 are bit-identical to coherent") {
-    const auto coherent = make_decorrelation("coherent", {});
+    const auto coherent = make("coherent", {});
     for (const double mu : {0.0, -0.0, std::numeric_limits<double>::denorm_min(), 1e-300, 0x1p-34}) {
-        check_equal_up_to_shift(*make_decorrelation("micro-jitter", with_mu(mu)), *coherent, 0);
+        check_equal_up_to_shift(*make("micro-jitter", with_mu(mu)), *coherent, 0);
     }
-    check_equal_up_to_shift(*make_decorrelation("micro-jitter", with_formula(0, 16)), *coherent, 0);
-    check_equal_up_to_shift(*make_decorrelation("micro-jitter", with_formula(5e-324, 16)), *coherent, 0);
+    check_equal_up_to_shift(*make("micro-jitter", with_formula(0, 16)), *coherent, 0);
+    check_equal_up_to_shift(*make("micro-jitter", with_formula(5e-324, 16)), *coherent, 0);
 }
 
 TEST_CASE("sampling: mu = 1 is Cranley-Patterson up to a global shift of exactly 2^31") {
     for (const std::uint64_t seed : {0ULL, 5ULL, ~0ULL}) {
-        DecorrelationSettings settings = with_mu(1);
+        Given settings = with_mu(1);
         settings.seed = seed;
-        check_equal_up_to_shift(*make_decorrelation("micro-jitter", settings),
-                                *make_decorrelation("cranley-patterson", settings), half);
+        check_equal_up_to_shift(*make("micro-jitter", settings), *make("cranley-patterson", settings), half);
     }
 }
 
@@ -145,28 +153,27 @@ TEST_CASE("sampling: N = 1 with K >= 1 is mu = 1, Cranley-Patterson up to the sh
     for (const double k : {1.0, 2.5, 100.0}) {
         const auto settings = with_formula(k, 1);
         CHECK(effective_mu(settings) == 1.0);
-        check_equal_up_to_shift(*make_decorrelation("micro-jitter", settings),
-                                *make_decorrelation("cranley-patterson", settings), half);
+        check_equal_up_to_shift(*make("micro-jitter", settings), *make("cranley-patterson", settings), half);
     }
 }
 
 TEST_CASE("sampling: K = 4 at N = 10 asks for mu = 1.265, which is clamped to 1 with a warning") {
     const auto settings = with_formula(4, 10);
-    CHECK(requested_mu(settings) == Approx(1.2649).epsilon(1e-4));
+    CHECK(requested_mu(settings, settings.spp) == Approx(1.2649).epsilon(1e-4));
     CHECK(effective_mu(settings) == 1.0);
-    const auto jitter = make_decorrelation("micro-jitter", settings);
-    check_equal_up_to_shift(*jitter, *make_decorrelation("micro-jitter", with_mu(1)), 0);
+    const auto jitter = make("micro-jitter", settings);
+    check_equal_up_to_shift(*jitter, *make("micro-jitter", with_mu(1)), 0);
     CHECK_THAT(jitter->warning(), Catch::Contains("mu 1.26491 clamped to 1") && !Catch::Contains("\n"));
-    CHECK_THAT(make_decorrelation("micro-jitter", with_mu(1.58))->warning(), Catch::Contains("mu 1.58 clamped to 1"));
-    CHECK(make_decorrelation("micro-jitter", with_mu(1))->warning().empty());
-    CHECK(make_decorrelation("coherent", settings)->warning().empty());
-    CHECK(make_decorrelation("cranley-patterson", settings)->warning().empty());
+    CHECK_THAT(make("micro-jitter", with_mu(1.58))->warning(), Catch::Contains("mu 1.58 clamped to 1"));
+    CHECK(make("micro-jitter", with_mu(1))->warning().empty());
+    CHECK(make("coherent", settings)->warning().empty());
+    CHECK(make("cranley-patterson", settings)->warning().empty());
 }
 
 TEST_CASE("sampling: a mu too small to move a float still jitters in fixed point") {
     constexpr float x = 0.75F;
     constexpr float mu = 5.9e-8F;
-    const auto jitter = make_decorrelation("micro-jitter", with_mu(mu));
+    const auto jitter = make("micro-jitter", with_mu(mu));
     std::set<std::uint32_t> fixed;
     std::set<float> floating;
     for (std::uint32_t p = 0; p < 1000; ++p) {
@@ -187,7 +194,7 @@ TEST_CASE("sampling: mu follows K * N^(-1/s)") {
     CHECK(effective_mu(with_formula(0.5, std::uint64_t{1} << 32, 4000000000U)) == Approx(0.5));
     CHECK(effective_mu(with_formula(2.5, std::uint64_t{1} << 32)) == 2.5 / 65536);
     CHECK(effective_mu(with_formula(std::numeric_limits<double>::max(), 1)) == 1.0);
-    DecorrelationSettings overridden = with_formula(2.5, 1024);
+    Given overridden = with_formula(2.5, 1024);
     overridden.mu = 0.1;
     CHECK(effective_mu(overridden) == 0.1);
 }
@@ -205,15 +212,15 @@ TEST_CASE(
         }
         return outside / 65536.0;
     };
-    CHECK(count_outside(*make_decorrelation("micro-jitter", with_mu(1))) == Approx(1 - 2.0 / 16).margin(0.01));
-    CHECK(count_outside(*make_decorrelation("micro-jitter", with_mu(1.0 / 16))) == 0);
+    CHECK(count_outside(*make("micro-jitter", with_mu(1))) == Approx(1 - 2.0 / 16).margin(0.01));
+    CHECK(count_outside(*make("micro-jitter", with_mu(1.0 / 16))) == 0);
 }
 
 TEST_CASE("sampling: parameters say K, s and the effective mu as the user gave them") {
-    CHECK(make_decorrelation("micro-jitter", with_formula(2.5, 1024))->parameters() == "K=2.5 s=2 mu=0.078125");
-    CHECK(make_decorrelation("micro-jitter", with_formula(4, 10))->parameters() == "K=4 s=2 mu=1");
-    CHECK(make_decorrelation("micro-jitter", with_mu(0.1))->parameters() == "mu=0.1");
-    CHECK(make_decorrelation("micro-jitter", with_mu(1.58))->parameters() == "mu=1");
+    CHECK(make("micro-jitter", with_formula(2.5, 1024))->parameters() == "K=2.5 s=2 mu=0.078125");
+    CHECK(make("micro-jitter", with_formula(4, 10))->parameters() == "K=4 s=2 mu=1");
+    CHECK(make("micro-jitter", with_mu(0.1))->parameters() == "mu=0.1");
+    CHECK(make("micro-jitter", with_mu(1.58))->parameters() == "mu=1");
 }
 
 TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrelation") {
@@ -226,17 +233,17 @@ TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrel
     check_refused(with_mu(-0.5), "mu must be a number of 0 or more, found -0.5");
     check_refused(with_mu(not_a_number), "found nan");
     check_refused(with_mu(infinity), "found inf");
-    DecorrelationSettings classes;
+    Given classes;
     classes.interleave = 0;
     check_refused(classes, "must be 1 to 256, found 0");
     classes.interleave = 257;
     check_refused(classes, "must be 1 to 256, found 257");
-    CHECK_NOTHROW(make_decorrelation("micro-jitter", with_formula(2.5, std::uint64_t{1} << 32)));
+    CHECK_NOTHROW(make("micro-jitter", with_formula(2.5, std::uint64_t{1} << 32)));
 }
 
 TEST_CASE("sampling: an unknown decorrelation is refused in one line that lists the valid names") {
-    CHECK_THROWS_AS(make_decorrelation("microjitter", {}), UsageError);
-    CHECK_THROWS_WITH(make_decorrelation("microjitter", {}),
+    CHECK_THROWS_AS(make("microjitter", {}), UsageError);
+    CHECK_THROWS_WITH(make("microjitter", {}),
                       Catch::Contains("'microjitter'") &&
                           Catch::Contains("coherent, cranley-patterson, micro-jitter, scrambling-distance") &&
                           !Catch::Contains("\n"));
@@ -250,8 +257,8 @@ TEST_CASE(
     for (const auto& entry : decorrelations()) {
         CHECK(names.insert(entry.name).second);
         CHECK_FALSE(entry.description.empty());
-        const auto first = make_decorrelation(entry.name, with_formula(2.5, 64));
-        const auto second = make_decorrelation(entry.name, with_formula(2.5, 64));
+        const auto first = make(entry.name, with_formula(2.5, 64));
+        const auto second = make(entry.name, with_formula(2.5, 64));
         check_equal_up_to_shift(*first, *second, 0);
         check_equal_up_to_shift(*first, *first, 0);
     }
@@ -259,10 +266,10 @@ TEST_CASE(
 
 TEST_CASE("sampling: another seed gives other values, except for coherent") {
     for (const auto& entry : decorrelations()) {
-        DecorrelationSettings settings = with_formula(2.5, 64);
-        const auto a = make_decorrelation(entry.name, settings);
+        Given settings = with_formula(2.5, 64);
+        const auto a = make(entry.name, settings);
         settings.seed = 1;
-        const auto b = make_decorrelation(entry.name, settings);
+        const auto b = make(entry.name, settings);
         int same = 0;
         for (std::uint32_t p = 0; p < 1000; ++p) same += a->apply(0, p, 0, 0) == b->apply(0, p, 0, 0);
         CHECK(same == (entry.name == "coherent" ? 1000 : 0));

@@ -16,8 +16,8 @@ StrategySettings settings_of(const std::string& sequence, const std::string& dec
     StrategySettings settings;
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
-    settings.parameters.spp = spp;
-    settings.parameters.width = 64;
+    settings.samples.spp = spp;
+    settings.samples.width = 64;
     return settings;
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("sampling: N that is no power of two is refused where a whole net is n
 TEST_CASE("sampling: strategies that depend on a pixel's place are refused without the picture's width") {
     for (const std::string decorrelation : {"interleaved", "blue-noise", "net-micro-jitter-fast"}) {
         auto settings = settings_of("sobol", decorrelation, 64);
-        settings.parameters.width = 0;
+        settings.samples.width = 0;
         check_refused(settings, "width");
     }
 }
@@ -100,7 +100,8 @@ TEST_CASE("sampling: s = full is all dimensions of the path, after which mu is u
     settings.parameters.full_s = true;
     settings.parameters.k = 1;
     CHECK(SamplingStrategy(settings, 2).parameters() == "K=1 s=full(2) mu=0.03125");
-    CHECK_THROWS_WITH(make_decorrelation("micro-jitter", settings.parameters), Catch::Contains("s = full"));
+    CHECK_THROWS_WITH(make_decorrelation("micro-jitter", settings.parameters, settings.samples),
+                      Catch::Contains("s = full"));
 }
 
 TEST_CASE("sampling: K from the star discrepancy makes mu its s-th root: 2.17 for the paper's Figure 2") {
@@ -109,7 +110,7 @@ TEST_CASE("sampling: K from the star discrepancy makes mu its s-th root: 2.17 fo
     CHECK_THAT(SamplingStrategy(settings, 26).parameters(), Catch::StartsWith("K=discrepancy(2.165"));
     settings.parameters.s = 1;
     CHECK_THAT(SamplingStrategy(settings, 26).parameters(), Catch::StartsWith("K=discrepancy(4.691"));  // its square
-    settings.parameters.spp = 65537;
+    settings.samples.spp = 65537;
     check_refused(settings, "for N up to 65536, found N = 65537");
     settings.decorrelation = "coherent";  // ignores K
     CHECK_NOTHROW(SamplingStrategy(settings, 26));

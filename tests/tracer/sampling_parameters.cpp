@@ -12,8 +12,8 @@ StrategySettings settings_of(const std::string& decorrelation, bool with_mu) {
     StrategySettings settings;
     settings.decorrelation = decorrelation;
     settings.sequence = "sobol";
-    settings.parameters.spp = 1024;
-    settings.parameters.width = 64;
+    settings.samples.spp = 1024;
+    settings.samples.width = 64;
     if (with_mu) settings.parameters.mu = 0.5;
     return settings;
 }
@@ -36,7 +36,7 @@ struct Change {
 
 const std::vector<Change> changes{
     {Parameter::sequence, [](auto& s) { s.sequence = "sobol-owen-4d"; }},
-    {Parameter::seed, [](auto& s) { s.parameters.seed = 9; }},
+    {Parameter::seed, [](auto& s) { s.samples.seed = 9; }},
     {Parameter::k, [](auto& s) { s.parameters.k = 1.7; }},
     {Parameter::s, [](auto& s) { s.parameters.s = 3; }},
     {Parameter::mu, [](auto& s) { s.parameters.mu = 0.3; }},
@@ -76,7 +76,7 @@ TEST_CASE("sampling: a sequence depends on the seed where its entry says so") {
         StrategySettings before = settings_of("coherent", false);
         before.sequence = entry.name;
         StrategySettings after = before;
-        after.parameters.seed = 9;
+        after.samples.seed = 9;
         INFO(entry.name);
         CHECK(entry.reads_seed == !same_values(before, after));
     }
@@ -86,7 +86,7 @@ TEST_CASE("sampling: an N between two powers of two is pointed out for nets, and
     const auto lines = [](const std::string& sequence, const std::string& decorrelation, std::uint64_t n) {
         StrategySettings settings = settings_of(decorrelation, false);
         settings.sequence = sequence;
-        settings.parameters.spp = n;
+        settings.samples.spp = n;
         return SamplingStrategy(settings, 22).warnings();
     };
     for (const char* net : {"sobol", "sobol-owen-02", "sobol-owen-4d", "pmj02"}) {

@@ -27,9 +27,9 @@ SamplingStrategy strategy(const std::string& sequence, const std::string& decorr
     StrategySettings settings;
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
-    settings.parameters.spp = spp;
-    settings.parameters.seed = 3;
-    settings.parameters.width = width;
+    settings.samples.spp = spp;
+    settings.samples.seed = 3;
+    settings.samples.width = width;
     if (change) change(settings.parameters);
     return {settings, dimensions};
 }

@@ -16,7 +16,7 @@ StrategySettings strategy(const std::string& sequence, const std::string& decorr
     StrategySettings settings;
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
-    settings.parameters.spp = spp;
+    settings.samples.spp = spp;
     return settings;
 }
 
@@ -54,12 +54,12 @@ TEST_CASE("sampling: a strategy is its sequence followed by its decorrelation", 
     for (const auto& sequence : sequences()) {
         for (const auto& decorrelation : decorrelations()) {
             auto settings = strategy(sequence.name, decorrelation.name, 64);
-            settings.parameters.width = 64;
-            settings.parameters.dimensions = 26;
-            const auto x = make_sequence(sequence.name, settings.parameters.seed);
+            settings.samples.width = 64;
+            settings.samples.dimensions = 26;
+            const auto x = make_sequence(sequence.name, settings.samples.seed);
             std::unique_ptr<Decorrelation> y;
             try {
-                y = make_decorrelation(decorrelation.name, settings.parameters, *x);
+                y = make_decorrelation(decorrelation.name, settings.parameters, settings.samples, *x);
             } catch (const UsageError&) {  // an undefined pair: sampling_pairs.cpp
                 CHECK_THROWS_AS(SamplingStrategy(settings, 26), UsageError);
                 continue;
@@ -82,13 +82,13 @@ TEST_CASE("sampling: a strategy is its sequence followed by its decorrelation", 
 
 TEST_CASE("sampling: the default strategy is the paper's: Sobol, micro-jitter, K = 2.5, s = 2") {
     StrategySettings settings;
-    settings.parameters.spp = 1024;
+    settings.samples.spp = 1024;
     const SamplingStrategy paper(settings, 26);
     CHECK(paper.settings().sequence == "sobol");
     CHECK(paper.settings().decorrelation == "micro-jitter");
     CHECK(paper.parameters() == "K=2.5 s=2 mu=0.078125");
     CHECK(paper.warnings().empty());
-    settings.parameters.spp = 4;
+    settings.samples.spp = 4;
     CHECK_THAT(SamplingStrategy(settings, 26).warnings().at(0), Catch::Contains("mu 1.25 clamped to 1"));
 }
 

@@ -49,7 +49,7 @@ CaptureSettings picture(const std::string& order = "", ThreadMap map = ThreadMap
     settings.height = 24;
     settings.thread_map = map;
     settings.strategy.decorrelation = "cranley-patterson";
-    settings.strategy.parameters.spp = 1;
+    settings.strategy.samples.spp = 1;
     settings.trace_samples = 1;
     if (!order.empty()) settings.execution = {Execution::wavefront, order};
     return settings;
@@ -248,7 +248,7 @@ TEST_CASE("wavefront: a file has the same warps, whatever the number of threads"
     for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples}) {
         CaptureSettings settings = picture("meister-two-point", map);
         settings.width = 20;
-        settings.strategy.parameters.spp = 64;
+        settings.strategy.samples.spp = 64;
         settings.trace_samples = 2;
         const Capture capture(scene, settings);
         const TemporaryFolder folder;

@@ -31,9 +31,9 @@ std::unique_ptr<tracer::Capture> make_capture(const std::string& strategy) {
     tracer::CaptureSettings settings;
     settings.trace_samples = 1;
     settings.strategy.decorrelation = strategy;
-    settings.strategy.parameters.spp = 1024;
+    settings.strategy.samples.spp = 1024;
     settings.strategy.parameters.k = 1;
-    settings.strategy.parameters.seed = 1;
+    settings.strategy.samples.seed = 1;
     return std::make_unique<tracer::Capture>(scene(), settings);
 }
 

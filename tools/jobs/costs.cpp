@@ -13,7 +13,7 @@ double rays_of(std::uint64_t paths, std::uint32_t bounces) {
 }
 
 double rays_of(const tracer::CaptureSettings& s) {
-    return rays_of(std::uint64_t{s.width} * s.height * std::min(s.trace_samples, s.strategy.parameters.spp),
+    return rays_of(std::uint64_t{s.width} * s.height * std::min(s.trace_samples, s.strategy.samples.spp),
                    s.paths.bounces);
 }
 

@@ -26,7 +26,7 @@ tracer::RenderSettings render_settings(const tracer::CaptureSettings& s, std::op
 }
 
 std::uint64_t paths_of(const tracer::CaptureSettings& s) {
-    return std::uint64_t{s.width} * s.height * s.strategy.parameters.spp;
+    return std::uint64_t{s.width} * s.height * s.strategy.samples.spp;
 }
 
 /// Of all pictures of the strategies.
@@ -39,11 +39,11 @@ std::uint64_t paths_of(const QualityRequest& request) {
 
 /// The case with another N; a strategy that takes only powers of two gets the next lower one.
 tracer::CaptureSettings with_spp(tracer::CaptureSettings settings, std::uint64_t spp) {
-    settings.strategy.parameters.spp = spp;
+    settings.strategy.samples.spp = spp;
     try {
         const tracer::SamplingStrategy check(settings.strategy, dimensions_of(settings));
     } catch (const UsageError&) {
-        settings.strategy.parameters.spp = std::bit_floor(spp);
+        settings.strategy.samples.spp = std::bit_floor(spp);
     }
     return settings;
 }
@@ -58,7 +58,7 @@ public:
         std::vector<tracer::Image> seeds;
         for (std::uint64_t r = 0; r < repeats_; ++r) {
             tracer::RenderSettings one = render_settings(settings, clamp_);
-            one.strategy.parameters.seed += r;
+            one.strategy.samples.seed += r;
             seeds.push_back(tracer::render(scene_, one, [&](std::uint64_t done) { stage_.add(done, done); }));
         }
         const auto errors = tracer::measure_errors(seeds, reference_);
@@ -136,13 +136,13 @@ void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Refe
         const double seconds = row.baseline ? rows[*row.baseline].timing->seconds : row.timing->seconds;
         const double spp = std::round(static_cast<double>(row.spp()) * seconds / row.timing->seconds);
         cases.push_back(with_spp(row.settings, static_cast<std::uint64_t>(std::clamp(spp, 1.0, 0x1p32))));
-        if (cases.back().strategy.parameters.spp != row.spp()) paths += request.repeats * paths_of(cases.back());
+        if (cases.back().strategy.samples.spp != row.spp()) paths += request.repeats * paths_of(cases.back());
     }
     const Stage stage(observer, "equal time", paths, "paths");
     Renderer renderer(scene, reference, request, stage);
     for (std::size_t r = 0; r < rows.size(); ++r) {
         QualityRow::EqualTime& same = rows[r].equal_time.emplace(QualityRow::EqualTime{});
-        same.spp = cases[r].strategy.parameters.spp;
+        same.spp = cases[r].strategy.samples.spp;
         if (same.spp == rows[r].spp()) {
             same.errors = rows[r].errors;
             pictures.at_equal_time.push_back(pictures.rows[r]);
@@ -181,7 +181,7 @@ void check(const QualityRequest& request) {
     if (request.cases.empty()) throw UsageError("no strategy; expected at least one --strategy");
     for (const auto& c : request.cases) {
         const tracer::SamplingStrategy strategy(c.strategy, dimensions_of(c));
-        tracer::check_seeds(c.strategy.parameters.seed, request.repeats);
+        tracer::check_seeds(c.strategy.samples.seed, request.repeats);
     }
     const auto is_baseline = [&](const auto& c) { return c.strategy.decorrelation == request.baseline; };
     if (!request.baseline.empty() && std::none_of(request.cases.begin(), request.cases.end(), is_baseline))

@@ -57,7 +57,7 @@ struct QualityRow {
     std::optional<EqualTime> equal_time;
 
     const tracer::StrategySettings& strategy() const { return settings.strategy; }
-    std::uint64_t spp() const { return settings.strategy.parameters.spp; }
+    std::uint64_t spp() const { return settings.strategy.samples.spp; }
     /// The pair with the largest share, if any has one.
     std::optional<PairEffect> worst_pair() const;
 };

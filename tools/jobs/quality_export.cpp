@@ -62,7 +62,7 @@ Json row_json(const QualityRow& row, const std::vector<QualityRow>& all) {
               {"parameters", row.parameters},
               {"mu", s.parameters.mu ? Json(*s.parameters.mu) : Json(nullptr)},
               {"spp", row.spp()},
-              {"seed", s.parameters.seed}};
+              {"seed", s.samples.seed}};
     json["unbiased_by_construction"] = tracer::find_decorrelation(s.decorrelation).independent_pixels;
     json.update(errors_json(row.errors, row.settings.width));
     json.update(ratio_json(row.ratio));

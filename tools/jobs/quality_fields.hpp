@@ -44,26 +44,29 @@ struct Fields<tracer::CyclesSettings> {
 };
 
 template <>
+struct Fields<tracer::SampleSet> {
+    using S = tracer::SampleSet;
+    static constexpr std::tuple all{Field{"spp", &S::spp}, Field{"seed", &S::seed}, Field{"dimensions", &S::dimensions},
+                                    Field{"width", &S::width}};
+};
+
+template <>
 struct Fields<tracer::DecorrelationSettings> {
     using S = tracer::DecorrelationSettings;
-    static constexpr std::tuple all{Field{"spp", &S::spp},
-                                    Field{"seed", &S::seed},
-                                    Field{"k", &S::k},
+    static constexpr std::tuple all{Field{"k", &S::k},
                                     Field{"k_from_discrepancy", &S::k_from_discrepancy},
                                     Field{"s", &S::s},
                                     Field{"full_s", &S::full_s},
                                     Field{"mu", &S::mu},
                                     Field{"cycles", &S::cycles},
-                                    Field{"interleave", &S::interleave},
-                                    Field{"dimensions", &S::dimensions},
-                                    Field{"width", &S::width}};
+                                    Field{"interleave", &S::interleave}};
 };
 
 template <>
 struct Fields<tracer::StrategySettings> {
     using S = tracer::StrategySettings;
     static constexpr std::tuple all{Field{"sequence", &S::sequence}, Field{"decorrelation", &S::decorrelation},
-                                    Field{"parameters", &S::parameters},
+                                    Field{"samples", &S::samples}, Field{"parameters", &S::parameters},
                                     Field{"independent_pair", &S::independent_pair}};
 };
 

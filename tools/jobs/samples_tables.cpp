@@ -101,8 +101,8 @@ struct Row {
         StrategySettings settings;
         settings.sequence = sequence;
         settings.decorrelation = decorrelation;
-        settings.parameters.spp = n;
-        settings.parameters.seed = 1;
+        settings.samples.spp = n;
+        settings.samples.seed = 1;
         settings.parameters.k = k;
         settings.parameters.s = s;
         return settings;

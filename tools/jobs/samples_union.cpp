@@ -19,13 +19,14 @@ namespace {
 constexpr std::size_t histogram_lines = 12;
 
 void check_size(const StrategySettings& strategy, std::uint32_t a, std::uint32_t b, std::uint64_t copies) {
+    check_spp(strategy.samples.spp);
     check_settings(strategy.parameters);
     const std::uint32_t dimensions = make_sequence(strategy.sequence)->dimensions();
     if (std::max(a, b) >= dimensions || a == b)
         throw UsageError(fmt::format("--dimensions {},{}; expected two different ones, 0 to {} for sequence '{}'", a, b,
                                      dimensions - 1, strategy.sequence));
     if (copies == 0) throw UsageError("--copies 0; expected 1 or more: the number of pixels");
-    const std::uint64_t n = strategy.parameters.spp;
+    const std::uint64_t n = strategy.samples.spp;
     if (n > max_union_points || copies > max_union_points / n)
         throw UsageError(
             fmt::format("--spp {} with --copies {}; expected at most {} points together: lower one of them", n, copies,
@@ -86,14 +87,14 @@ SampleUnion make_sample_union(StrategySettings settings, std::uint32_t first, st
     u.first_dimension = first;
     u.second_dimension = second;
     u.copies = static_cast<std::uint32_t>(copies);
-    settings.parameters.width = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(copies))));
+    settings.samples.width = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(copies))));
     const SamplingStrategy strategy(settings, std::max(first, second) + 1);
     u.strategy = strategy.settings();
     u.parameters = strategy.parameters();
     u.warnings = strategy.warnings();
 
-    const auto n = static_cast<std::uint32_t>(settings.parameters.spp);
-    const auto sequence = make_sequence(settings.sequence, settings.parameters.seed);
+    const auto n = static_cast<std::uint32_t>(settings.samples.spp);
+    const auto sequence = make_sequence(settings.sequence, settings.samples.seed);
     for (std::uint32_t i = 0; i < n; ++i) u.base.push_back({sequence->sample(i, first), sequence->sample(i, second)});
     u.points.reserve(n * copies);
     for (std::uint32_t pixel = 0; pixel < copies; ++pixel)

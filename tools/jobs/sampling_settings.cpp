@@ -77,10 +77,10 @@ tracer::StrategySettings SamplingSettings::strategy(const std::string& sequence,
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
     tracer::DecorrelationSettings& p = settings.parameters;
-    p.spp = spp;
-    p.seed = seed;
+    settings.samples.spp = spp;
+    settings.samples.seed = seed;
+    settings.samples.width = parse_resolution(resolution).width;
     p.interleave = interleave;
-    p.width = parse_resolution(resolution).width;
     p.k_from_discrepancy = k == "discrepancy";
     if (!p.k_from_discrepancy) p.k = read_real(k, "--k", {});
     p.full_s = s == "full";
@@ -135,7 +135,7 @@ void warn_of_strategies(const std::vector<tracer::CaptureSettings>& cases, Obser
     std::vector<std::string> said;
     for (const tracer::CaptureSettings& c : cases) {
         tracer::StrategySettings strategy = c.strategy;
-        strategy.parameters.width = c.width;
+        strategy.samples.width = c.width;
         const tracer::SamplingStrategy made(strategy, tracer::sample_dimensions(c.paths));
         for (const std::string& line : made.warnings()) {
             if (std::find(said.begin(), said.end(), line) != said.end()) continue;

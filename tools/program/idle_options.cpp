@@ -80,7 +80,7 @@ std::string seed_rule(const Case& c, const Context& context) {
     const auto sequence =
         std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == c.strategy.sequence; });
     if (sequence != all.end() && sequence->reads_seed) return {};
-    if (context.use.launches && c.trace_samples < c.strategy.parameters.spp) return {};
+    if (context.use.launches && c.trace_samples < c.strategy.samples.spp) return {};
     return fmt::format("{} of {} does not depend on it", entry.name, c.strategy.sequence);
 }
 
@@ -90,7 +90,7 @@ std::string launches_rule(const Case&, const Context& context) {
 
 std::string trace_samples_rule(const Case& c, const Context& context) {
     if (!context.use.launches) return context.use.without_launches;
-    const std::uint64_t n = c.strategy.parameters.spp;
+    const std::uint64_t n = c.strategy.samples.spp;
     return c.trace_samples > n ? fmt::format("N is {}, so that all {} are traced", n, n) : "";
 }
 

@@ -26,10 +26,10 @@ std::vector<Sum> render_half(const PreparedScene& scene, const ReferenceSettings
         RenderSettings part{settings.width, settings.height, settings.paths, {}, settings.clamp};
         part.strategy.decorrelation = settings.decorrelation;
         part.strategy.sequence = settings.sequence;
-        part.strategy.parameters.spp = std::min(block, spp - done);
-        part.strategy.parameters.seed = seed;
+        part.strategy.samples.spp = std::min(block, spp - done);
+        part.strategy.samples.seed = seed;
         const Image image = render(scene, part, progress);
-        const double share = static_cast<double>(part.strategy.parameters.spp) / static_cast<double>(spp);
+        const double share = static_cast<double>(part.strategy.samples.spp) / static_cast<double>(spp);
         for (std::size_t p = 0; p < mean.size(); ++p)
             for (int c = 0; c < 3; ++c) mean[p][static_cast<std::size_t>(c)] += share * double{image.pixels[p][c]};
     }

@@ -15,8 +15,6 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr std::uint64_t max_spp = std::uint64_t{1} << 32;
-
 void check_nonnegative(const char* name, double value, const char* example) {
     if (!std::isfinite(value) || value < 0) {
         throw UsageError(fmt::format("sampling: {} must be a number of 0 or more, found {}: give {} such as {}", name,
@@ -26,15 +24,7 @@ void check_nonnegative(const char* name, double value, const char* example) {
 
 }  // namespace
 
-void check_spp(std::uint64_t spp) {
-    if (spp >= 1 && spp <= max_spp) return;
-    throw UsageError(
-        fmt::format("sampling: the number of samples per pixel N must be 1 to {}, found {}: give an N in that range",
-                    max_spp, spp));
-}
-
 void check_settings(const DecorrelationSettings& settings) {
-    check_spp(settings.spp);
     check_nonnegative("K", settings.k, "2.5");
     if (settings.s == 0) {
         throw UsageError(
@@ -49,40 +39,43 @@ void check_settings(const DecorrelationSettings& settings) {
     check_cycles(settings.cycles);
 }
 
-double requested_mu(const DecorrelationSettings& settings) {
+double requested_mu(const DecorrelationSettings& settings, std::uint64_t spp) {
     if (settings.mu) return *settings.mu;
-    const auto n = static_cast<double>(settings.spp);
+    const auto n = static_cast<double>(spp);
     // The two common cases need no pow(), whose last digit depends on the C library and processor.
     if (settings.s == 1) return settings.k / n;
     if (settings.s == 2) return settings.k / std::sqrt(n);
     return settings.k / std::pow(n, 1.0 / settings.s);
 }
 
-double scrambling_distance(const DecorrelationSettings& settings) {
-    return settings.mu ? *settings.mu : cycles_distance(settings.cycles, settings.spp);
+double scrambling_distance(const DecorrelationSettings& settings, std::uint64_t spp) {
+    return settings.mu ? *settings.mu : cycles_distance(settings.cycles, spp);
 }
 
-double effective_mu(const DecorrelationSettings& settings) { return std::min(1.0, requested_mu(settings)); }
+double effective_mu(const DecorrelationSettings& settings, std::uint64_t spp) {
+    return std::min(1.0, requested_mu(settings, spp));
+}
 
-DecorrelationSettings resolve_k_and_s(const DecorrelationSettings& settings, const Sequence& sequence) {
+DecorrelationSettings resolve_k_and_s(const DecorrelationSettings& settings, const SampleSet& samples,
+                                      const Sequence& sequence) {
     DecorrelationSettings resolved = settings;
     if (settings.full_s) {
-        if (settings.dimensions == 0)
+        if (samples.dimensions == 0)
             throw UsageError(
                 "sampling: s = full needs the number of dimensions of a path, found none: give s as a number");
-        resolved.s = settings.dimensions;
+        resolved.s = samples.dimensions;
     }
     if (settings.k_from_discrepancy) {
-        if (settings.spp > max_star_discrepancy_points) {
+        if (samples.spp > max_star_discrepancy_points) {
             throw UsageError(fmt::format(
                 "sampling: K from the star discrepancy is computed exactly, for N up to {}, found N = {}: give K as a "
                 "number such as 2.5",
-                max_star_discrepancy_points, settings.spp));
+                max_star_discrepancy_points, samples.spp));
         }
         std::vector<FixedPoint2> points;
-        for (std::uint32_t i = 0; i < settings.spp; ++i)
+        for (std::uint32_t i = 0; i < samples.spp; ++i)
             points.push_back({sequence.sample(i, 0), sequence.sample(i, 1)});
-        resolved.k = std::pow(static_cast<double>(settings.spp) * star_discrepancy(points), 1.0 / resolved.s);
+        resolved.k = std::pow(static_cast<double>(samples.spp) * star_discrepancy(points), 1.0 / resolved.s);
     }
     return resolved;
 }
@@ -99,11 +92,11 @@ void require_net(const std::string& decorrelation, const Sequence& sequence, uns
         decorrelation, s, s == 1 ? "" : "s", sequence.name(), names));
 }
 
-unsigned require_power_of_two(const std::string& decorrelation, const DecorrelationSettings& settings) {
-    if (std::has_single_bit(settings.spp)) return static_cast<unsigned>(std::countr_zero(settings.spp));
+unsigned require_power_of_two(const std::string& decorrelation, std::uint64_t spp) {
+    if (std::has_single_bit(spp)) return static_cast<unsigned>(std::countr_zero(spp));
     throw UsageError(
         fmt::format("sampling: {} needs a whole net, so N must be a power of two, found {}: give N = {} or {}",
-                    decorrelation, settings.spp, std::bit_floor(settings.spp), std::bit_ceil(settings.spp)));
+                    decorrelation, spp, std::bit_floor(spp), std::bit_ceil(spp)));
 }
 
 const char* to_string(Parameter parameter) {
@@ -148,14 +141,16 @@ const DecorrelationEntry& find_decorrelation(const std::string& name) {
 }
 
 std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings,
-                                                  const Sequence& sequence) {
+                                                  const SampleSet& samples, const Sequence& sequence) {
     const DecorrelationEntry& entry = find_decorrelation(name);
+    check_spp(samples.spp);
     check_settings(settings);
-    return entry.make(settings, sequence);
+    return entry.make(settings, samples, sequence);
 }
 
-std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings) {
-    return make_decorrelation(name, settings, *make_sequence("sobol"));
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings,
+                                                  const SampleSet& samples) {
+    return make_decorrelation(name, settings, samples, *make_sequence("sobol"));
 }
 
 }  // namespace raycache::tracer

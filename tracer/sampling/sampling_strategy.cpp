@@ -39,8 +39,8 @@ private:
 /// Another decorrelation, with one pair of dimensions left to `random`.
 class IndependentPair final : public Decorrelation {
 public:
-    IndependentPair(std::unique_ptr<Decorrelation> others, std::uint32_t pair, const DecorrelationSettings& settings)
-        : others_(std::move(others)), independent_(make_decorrelation("random", settings)), pair_(pair) {}
+    IndependentPair(std::unique_ptr<Decorrelation> others, std::uint32_t pair, const SampleSet& samples)
+        : others_(std::move(others)), independent_(make_decorrelation("random", {}, samples)), pair_(pair) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t index,
                         std::uint32_t dimension) const override {
@@ -57,9 +57,8 @@ private:
 }  // namespace
 
 SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32_t dimensions)
-    : settings_(settings),
-      dimensions_(dimensions),
-      sequence_(make_sequence(settings.sequence, settings.parameters.seed)) {
+    : settings_(settings), dimensions_(dimensions), sequence_(make_sequence(settings.sequence, settings.samples.seed)) {
+    check_spp(settings.samples.spp);
     check_settings(settings.parameters);
     if (dimensions > sequence_->dimensions()) {
         throw UsageError(fmt::format(
@@ -67,22 +66,22 @@ SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32
             "found {}: trace fewer bounces or choose another sequence",
             settings.sequence, sequence_->dimensions(), dimensions));
     }
-    if (settings.parameters.spp > sequence_->points()) {
+    if (settings.samples.spp > sequence_->points()) {
         throw UsageError(
             fmt::format("sampling: sequence '{}' has {} points, found N = {}: lower N or choose another sequence",
-                        settings.sequence, sequence_->points(), settings.parameters.spp));
+                        settings.sequence, sequence_->points(), settings.samples.spp));
     }
-    settings_.parameters.dimensions = dimensions;
-    decorrelation_ = make_decorrelation(settings.decorrelation, settings_.parameters, *sequence_);
+    settings_.samples.dimensions = dimensions;
+    decorrelation_ = make_decorrelation(settings.decorrelation, settings_.parameters, settings_.samples, *sequence_);
     if (settings.independent_pair)
-        decorrelation_ = std::make_unique<IndependentPair>(std::move(decorrelation_), *settings.independent_pair,
-                                                           settings.parameters);
+        decorrelation_ =
+            std::make_unique<IndependentPair>(std::move(decorrelation_), *settings.independent_pair, settings.samples);
 }
 
 std::vector<std::string> SamplingStrategy::warnings() const {
     std::vector<std::string> lines;
     if (const std::string line = decorrelation_->warning(); !line.empty()) lines.push_back(line);
-    const std::uint64_t n = settings_.parameters.spp;
+    const std::uint64_t n = settings_.samples.spp;
     const DecorrelationEntry& entry = find_decorrelation(settings_.decorrelation);
     if (sequence_->net_dimensions() != 0 && !std::has_single_bit(n) &&
         entry.reads_parameter(Parameter::sequence, settings_.parameters))
@@ -94,12 +93,12 @@ std::vector<std::string> SamplingStrategy::warnings() const {
 }
 
 std::vector<std::uint32_t> SamplingStrategy::base_point(std::uint64_t index) const {
-    if (index >= settings_.parameters.spp) {
+    if (index >= settings_.samples.spp) {
         throw UsageError(
             fmt::format("sampling: a sample index must be below the number of samples per pixel N = {}, found {}: "
                         "raise N or choose "
                         "a smaller index",
-                        settings_.parameters.spp, index));
+                        settings_.samples.spp, index));
     }
     std::vector<std::uint32_t> point(dimensions_);
     for (std::uint32_t d = 0; d < dimensions_; ++d) {

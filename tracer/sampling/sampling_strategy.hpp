@@ -18,6 +18,7 @@ inline float to_unit_float(std::uint32_t u) { return static_cast<float>(u >> 8) 
 struct StrategySettings {
     std::string sequence = "sobol";
     std::string decorrelation = "micro-jitter";
+    SampleSet samples;
     DecorrelationSettings parameters;
     /// q: dimensions 2q and 2q + 1 get what `random` would give them, to see what error a pair of dimensions causes.
     std::optional<std::uint32_t> independent_pair{};
@@ -26,7 +27,7 @@ struct StrategySettings {
 class SamplingStrategy {
 public:
     /// Fixes the strategy for paths of at most `dimensions` dimensions. Throws UsageError as its parts do, and where
-    /// the sequence has too few dimensions or points. Strategies that depend on a pixel's place need parameters.width.
+    /// the sequence has too few dimensions or points. Strategies that depend on a pixel's place need samples.width.
     SamplingStrategy(const StrategySettings&, std::uint32_t dimensions);
 
     /// The base point x_i of one sample index, all dimensions: compute it once per launch, not once per pixel.

@@ -18,11 +18,11 @@ namespace {
 
 class BlueNoise final : public Decorrelation {
 public:
-    BlueNoise(const DecorrelationSettings& settings, const Sequence& sequence)
-        : places_("blue-noise", settings.width),
-          detail_(settings.seed, HashPurpose::mask_detail),
-          mask_(make_blue_noise_mask(settings.seed)) {
-        const HashWords start = HashKey(settings.seed, HashPurpose::mask_shift).words(0, 0, 0);
+    BlueNoise(const SampleSet& samples, const Sequence& sequence)
+        : places_("blue-noise", samples.width),
+          detail_(samples.seed, HashPurpose::mask_detail),
+          mask_(make_blue_noise_mask(samples.seed)) {
+        const HashWords start = HashKey(samples.seed, HashPurpose::mask_shift).words(0, 0, 0);
         PixelPlace shift{start[0], start[1]};  // as a share of the torus, in units of 2^-32
         for (std::uint32_t d = 0; d < sequence.dimensions(); ++d) {
             shifts_.push_back({shift.x >> 26, shift.y >> 26});
@@ -50,9 +50,8 @@ private:
 
 DecorrelationEntry blue_noise_entry() {
     return {"blue-noise", "Cranley-Patterson rotation by a blue-noise mask: neighbours' offsets lie far apart",
-            [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<BlueNoise>(settings, sequence);
-            },
+            [](const DecorrelationSettings&, const SampleSet& samples, const Sequence& sequence)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<BlueNoise>(samples, sequence); },
             [](const DecorrelationSettings&) -> std::vector<Parameter> {
                 return {Parameter::sequence, Parameter::seed};
             }};

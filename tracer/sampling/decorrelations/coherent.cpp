@@ -15,7 +15,7 @@ public:
 
 DecorrelationEntry coherent_entry() {
     return {"coherent", "the same points for every pixel",
-            [](const DecorrelationSettings&, const Sequence&) -> std::unique_ptr<Decorrelation> {
+            [](const DecorrelationSettings&, const SampleSet&, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<Coherent>();
             },
             [](const DecorrelationSettings&) -> std::vector<Parameter> { return {Parameter::sequence}; }};

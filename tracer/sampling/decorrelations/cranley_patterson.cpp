@@ -24,16 +24,17 @@ private:
 }  // namespace
 
 DecorrelationEntry cranley_patterson_entry() {
-    return {"cranley-patterson",
-            "a random offset in [0, 1) per pixel and dimension, modulo 1",
-            [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<CranleyPatterson>(settings.seed);
-            },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed};
-            },
-            false,
-            true};
+    return {
+        "cranley-patterson",
+        "a random offset in [0, 1) per pixel and dimension, modulo 1",
+        [](const DecorrelationSettings&, const SampleSet& samples, const Sequence&) -> std::unique_ptr<Decorrelation> {
+            return std::make_unique<CranleyPatterson>(samples.seed);
+        },
+        [](const DecorrelationSettings&) -> std::vector<Parameter> {
+            return {Parameter::sequence, Parameter::seed};
+        },
+        false,
+        true};
 }
 
 }  // namespace raycache::tracer

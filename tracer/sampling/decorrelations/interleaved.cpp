@@ -14,9 +14,9 @@ namespace {
 
 class Interleaved final : public Decorrelation {
 public:
-    explicit Interleaved(const DecorrelationSettings& settings)
-        : key_(settings.seed, HashPurpose::class_offset),
-          places_("interleaved", settings.width),
+    Interleaved(const DecorrelationSettings& settings, const SampleSet& samples)
+        : key_(samples.seed, HashPurpose::class_offset),
+          places_("interleaved", samples.width),
           m_(settings.interleave) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
@@ -34,9 +34,8 @@ private:
 
 DecorrelationEntry interleaved_entry() {
     return {"interleaved", "m x m pixel classes, each with an offset of its own, the same points inside a class",
-            [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<Interleaved>(settings);
-            },
+            [](const DecorrelationSettings& settings, const SampleSet& samples, const Sequence&)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<Interleaved>(settings, samples); },
             [](const DecorrelationSettings&) -> std::vector<Parameter> {
                 return {Parameter::sequence, Parameter::seed, Parameter::interleave};
             },

@@ -17,15 +17,18 @@ namespace {
 
 class MicroJitter final : public Decorrelation {
 public:
-    explicit MicroJitter(const DecorrelationSettings& settings)
-        : settings_(settings), key_(settings.seed, HashPurpose::pixel_offset), mu_(effective_mu(settings)) {}
+    MicroJitter(const DecorrelationSettings& settings, const SampleSet& samples)
+        : settings_(settings),
+          spp_(samples.spp),
+          key_(samples.seed, HashPurpose::pixel_offset),
+          mu_(effective_mu(settings, spp_)) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
         return x + mu_.symmetric(pixel_offset(key_, pixel, dimension));  // wraps: modulo 1 in fixed point
     }
 
     std::string parameters() const override {
-        const double mu = effective_mu(settings_);
+        const double mu = effective_mu(settings_, spp_);
         if (settings_.mu) return fmt::format("mu={}", mu);
         const std::string k = settings_.k_from_discrepancy ? fmt::format("discrepancy({:.6g})", settings_.k)
                                                            : fmt::format("{}", settings_.k);
@@ -34,13 +37,14 @@ public:
     }
 
     std::string warning() const override {
-        const double requested = requested_mu(settings_);
+        const double requested = requested_mu(settings_, spp_);
         if (requested <= 1.0) return {};
         return fmt::format("mu {:.6g} clamped to 1: micro-jitter is then a Cranley-Patterson rotation", requested);
     }
 
 private:
     DecorrelationSettings settings_;
+    std::uint64_t spp_;
     HashKey key_;
     FixedMu mu_;
 };
@@ -49,8 +53,10 @@ private:
 
 DecorrelationEntry micro_jitter_entry() {
     return {"micro-jitter", "a random offset from a window of width mu per pixel and dimension, modulo 1: the paper",
-            [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<MicroJitter>(settings.mu ? settings : resolve_k_and_s(settings, sequence));
+            [](const DecorrelationSettings& settings, const SampleSet& samples,
+               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<MicroJitter>(
+                    settings.mu ? settings : resolve_k_and_s(settings, samples, sequence), samples);
             },
             [](const DecorrelationSettings& settings) -> std::vector<Parameter> {
                 if (settings.mu) return {Parameter::sequence, Parameter::seed, Parameter::mu};

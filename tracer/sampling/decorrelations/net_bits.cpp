@@ -7,11 +7,10 @@
 
 namespace raycache::tracer {
 
-NetBits::NetBits(const std::string& decorrelation, unsigned s, const DecorrelationSettings& settings,
-                 const Sequence& sequence) {
+NetBits::NetBits(const std::string& decorrelation, unsigned s, const SampleSet& samples, const Sequence& sequence) {
     require_net(decorrelation, sequence, s);
-    const unsigned m = require_power_of_two(decorrelation, settings);
-    const std::uint32_t used = settings.dimensions == 0 ? sequence.dimensions() : settings.dimensions;
+    const unsigned m = require_power_of_two(decorrelation, samples.spp);
+    const std::uint32_t used = samples.dimensions == 0 ? sequence.dimensions() : samples.dimensions;
     for (std::uint32_t first = 0; first < used; first += s) {
         const unsigned k = sequence.equal_cell_bits(first, s, m);
         masks_.insert(masks_.end(), s, k == 0 ? 0 : ~0U << (32 - k));

@@ -14,7 +14,7 @@ namespace raycache::tracer {
 class NetBits {
 public:
     /// Throws UsageError unless N is a power of two and the sequence a net in base 2 in s dimensions jointly.
-    NetBits(const std::string& decorrelation, unsigned s, const DecorrelationSettings&, const Sequence&);
+    NetBits(const std::string& decorrelation, unsigned s, const SampleSet&, const Sequence&);
 
     /// The leading k bits of `dimension` as a mask; 0 for k = 0.
     std::uint32_t mask(std::uint32_t dimension) const { return masks_[dimension]; }

@@ -15,8 +15,8 @@ namespace {
 
 class NetMicroJitter final : public Decorrelation {
 public:
-    NetMicroJitter(const DecorrelationSettings& settings, const Sequence& sequence)
-        : bits_("net-micro-jitter", 4, settings, sequence), key_(settings.seed, HashPurpose::pixel_scramble) {}
+    NetMicroJitter(const SampleSet& samples, const Sequence& sequence)
+        : bits_("net-micro-jitter", 4, samples, sequence), key_(samples.seed, HashPurpose::pixel_scramble) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
         const std::uint32_t shared = bits_.mask(dimension);
@@ -34,9 +34,8 @@ private:
 DecorrelationEntry net_micro_jitter_entry() {
     return {"net-micro-jitter",
             "leading bits of a net shared, the rest Owen-scrambled per pixel; unbiased in sets of 4",
-            [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<NetMicroJitter>(settings, sequence);
-            },
+            [](const DecorrelationSettings&, const SampleSet& samples, const Sequence& sequence)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<NetMicroJitter>(samples, sequence); },
             [](const DecorrelationSettings&) -> std::vector<Parameter> {
                 return {Parameter::sequence, Parameter::seed};
             }};

@@ -18,11 +18,11 @@ namespace {
 
 class FastNetMicroJitter final : public Decorrelation {
 public:
-    FastNetMicroJitter(const DecorrelationSettings& settings, const Sequence& sequence)
-        : bits_("net-micro-jitter-fast", 2, settings, sequence),
-          places_("net-micro-jitter-fast", settings.width),
-          class_key_(settings.seed, HashPurpose::class_scramble),
-          pixel_key_(settings.seed, HashPurpose::pixel_scramble),
+    FastNetMicroJitter(const DecorrelationSettings& settings, const SampleSet& samples, const Sequence& sequence)
+        : bits_("net-micro-jitter-fast", 2, samples, sequence),
+          places_("net-micro-jitter-fast", samples.width),
+          class_key_(samples.seed, HashPurpose::class_scramble),
+          pixel_key_(samples.seed, HashPurpose::pixel_scramble),
           m_(settings.interleave) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
@@ -44,8 +44,9 @@ private:
 
 DecorrelationEntry net_micro_jitter_fast_entry() {
     return {"net-micro-jitter-fast", "the same in sets of 2, with a net of its own for each of m x m pixel classes",
-            [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<FastNetMicroJitter>(settings, sequence);
+            [](const DecorrelationSettings& settings, const SampleSet& samples,
+               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<FastNetMicroJitter>(settings, samples, sequence);
             },
             [](const DecorrelationSettings&) -> std::vector<Parameter> {
                 return {Parameter::sequence, Parameter::seed, Parameter::interleave};

@@ -27,9 +27,10 @@ private:
 DecorrelationEntry owen_entry() {
     return {"owen",
             "nested uniform scrambling per pixel and dimension (Owen 1995, hash-based); nets in base 2 only",
-            [](const DecorrelationSettings& settings, const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+            [](const DecorrelationSettings&, const SampleSet& samples,
+               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 require_net("owen", sequence, 1);
-                return std::make_unique<Owen>(settings.seed);
+                return std::make_unique<Owen>(samples.seed);
             },
             [](const DecorrelationSettings&) -> std::vector<Parameter> {
                 return {Parameter::sequence, Parameter::seed};

@@ -25,9 +25,8 @@ private:
 DecorrelationEntry random_entry() {
     return {"random",
             "an independent random number per pixel, sample and dimension; ignores the sequence",
-            [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<Random>(settings.seed);
-            },
+            [](const DecorrelationSettings&, const SampleSet& samples,
+               const Sequence&) -> std::unique_ptr<Decorrelation> { return std::make_unique<Random>(samples.seed); },
             [](const DecorrelationSettings&) -> std::vector<Parameter> { return {Parameter::seed}; },
             false,
             true};

@@ -18,10 +18,11 @@ namespace {
 
 class ScramblingDistance final : public Decorrelation {
 public:
-    explicit ScramblingDistance(const DecorrelationSettings& settings)
+    ScramblingDistance(const DecorrelationSettings& settings, const SampleSet& samples)
         : settings_(settings),
-          key_(settings.seed, HashPurpose::pixel_offset),
-          requested_(scrambling_distance(settings)),
+          spp_(samples.spp),
+          key_(samples.seed, HashPurpose::pixel_offset),
+          requested_(scrambling_distance(settings, spp_)),
           distance_(std::min(1.0, requested_)) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
@@ -30,7 +31,7 @@ public:
     std::string parameters() const override {
         if (settings_.mu) return fmt::format("mu={}", std::min(1.0, requested_));
         return fmt::format("multiplier={:.6g} distance_samples={} mu={:.6g}{}", settings_.cycles.multiplier,
-                           cycles_samples(settings_.cycles, settings_.spp), std::min(1.0, requested_),
+                           cycles_samples(settings_.cycles, spp_), std::min(1.0, requested_),
                            requested_ >= 1 ? " (off)" : "");
     }
     std::string warning() const override {
@@ -45,6 +46,7 @@ public:
 
 private:
     DecorrelationSettings settings_;
+    std::uint64_t spp_;
     HashKey key_;
     double requested_;
     FixedMu distance_;
@@ -57,9 +59,8 @@ DecorrelationEntry scrambling_distance_entry() {
         "scrambling-distance",
         "a random offset in [0, d) per pixel and dimension, d automatic or --mu: Blender with the pattern Tabulated "
         "Sobol (off in a default Blender, whose pattern is blue noise)",
-        [](const DecorrelationSettings& settings, const Sequence&) -> std::unique_ptr<Decorrelation> {
-            return std::make_unique<ScramblingDistance>(settings);
-        },
+        [](const DecorrelationSettings& settings, const SampleSet& samples, const Sequence&)
+            -> std::unique_ptr<Decorrelation> { return std::make_unique<ScramblingDistance>(settings, samples); },
         [](const DecorrelationSettings& settings) -> std::vector<Parameter> {
             std::vector<Parameter> all{Parameter::sequence, Parameter::seed};
             const CyclesSettings& c = settings.cycles;

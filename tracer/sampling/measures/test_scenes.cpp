@@ -179,14 +179,14 @@ const TestScenes& edges_4d() {
 
 namespace {
 StrategySettings on_test_picture(StrategySettings settings) {
-    settings.parameters.width = test_picture_width;
+    settings.samples.width = test_picture_width;
     return settings;
 }
 }  // namespace
 
 StrategyPoints::StrategyPoints(StrategySettings settings, std::uint32_t dimensions)
     : strategy_(on_test_picture(std::move(settings)), dimensions) {
-    for (std::uint64_t i = 0; i < strategy_.settings().parameters.spp; ++i) {
+    for (std::uint64_t i = 0; i < strategy_.settings().samples.spp; ++i) {
         const std::vector<std::uint32_t> point = strategy_.base_point(i);
         base_.insert(base_.end(), point.begin(), point.end());
     }

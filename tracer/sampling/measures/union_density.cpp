@@ -26,19 +26,20 @@ std::optional<JitterWindow> jitter_window(const StrategySettings& strategy, std:
     if (name == "coherent") return JitterWindow{0, 0};
     for (const std::string_view other : uniform_everywhere)
         if (name == other) return JitterWindow{0, whole_circle};
-    DecorrelationSettings settings = strategy.parameters;
-    settings.dimensions = dimensions;
-    const auto sequence = make_sequence(strategy.sequence, settings.seed);
+    const DecorrelationSettings& settings = strategy.parameters;
+    SampleSet samples = strategy.samples;
+    samples.dimensions = dimensions;
+    const auto sequence = make_sequence(strategy.sequence, samples.seed);
     if (name == "net-micro-jitter" || name == "uniform-jitter") {
-        const auto m = static_cast<unsigned>(std::bit_width(settings.spp) - 1);
+        const auto m = static_cast<unsigned>(std::bit_width(samples.spp) - 1);
         const unsigned k = name == "uniform-jitter" ? m : sequence->equal_cell_bits(dimension / 4 * 4, 4, m);
         return JitterWindow{0, whole_circle >> k, k == 0 ? 0 : ~0U << (32 - k)};
     }
     const bool automatic = name == "scrambling-distance";
     if (name != "micro-jitter" && !automatic) return {};
-    const double mu = automatic     ? std::min(1.0, scrambling_distance(settings))
-                      : settings.mu ? effective_mu(settings)
-                                    : effective_mu(resolve_k_and_s(settings, *sequence));
+    const double mu = automatic     ? std::min(1.0, scrambling_distance(settings, samples.spp))
+                      : settings.mu ? effective_mu(settings, samples.spp)
+                                    : effective_mu(resolve_k_and_s(settings, samples, *sequence), samples.spp);
     const auto width = static_cast<std::uint64_t>(mu * 0x1p32 + 0.5);  // as FixedMu
     return JitterWindow{automatic ? 0 : width / 2, width};
 }
