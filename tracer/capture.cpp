@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "tracer/sampling/pixel_place.hpp"
 #include "traces/error.hpp"
 #include "traces/writer.hpp"
 
@@ -84,7 +85,7 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
       strategy_(settings_.strategy, sample_dimensions(settings_.paths)),
       camera_(scene.camera(), settings.width, settings.height),
       grid_(settings.thread_map, settings.width, settings.height, settings.strategy.samples.spp,
-            settings.strategy.parameters.interleave) {
+            interleave_of(settings.strategy.parameters)) {
     header_.provenance = make_provenance(scene, settings_, grid_, strategy_);
     header_.regions = make_regions(scene);
     header_.launches = choose_launches(settings_, grid_.samples_per_launch());

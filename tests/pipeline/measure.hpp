@@ -48,7 +48,7 @@ inline tracer::CaptureSettings capture_settings(const std::string& strategy, con
     settings.strategy.decorrelation = strategy;
     settings.strategy.samples.spp = spp;
     settings.strategy.samples.seed = 1;
-    settings.strategy.parameters.k = 1;
+    settings.strategy.parameters.set("k", 1);
     return settings;
 }
 

@@ -104,7 +104,7 @@ TEST_CASE("miss traffic falls as mu falls from 1 to 0", "[slow]") {
     std::vector<std::vector<Traffic>> sweep;
     for (const double mu : {1.0, 0.5, 0.25, 0.125, 0.03125, 0.0}) {
         auto settings = capture_settings("micro-jitter", "sobol", 1024, 6);
-        settings.strategy.parameters.mu = mu;
+        settings.strategy.parameters.set("mu", mu);
         sweep.push_back(measure(scene, settings));
     }
     for (const auto what : {&Traffic::l2_bytes, &Traffic::dram_bytes}) {

@@ -68,7 +68,7 @@ double pairwise_mean_square(const Points& points, double w) {
 StrategySettings micro_jitter(const char* sequence, std::uint32_t n, double k) {
     StrategySettings settings{sequence, "micro-jitter", {}};
     settings.samples.spp = n;
-    settings.parameters.k = k;
+    settings.parameters.set("k", k);
     return settings;
 }
 

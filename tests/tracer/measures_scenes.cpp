@@ -17,8 +17,8 @@ FieldError measure(const char* sequence, const char* decorrelation, std::uint32_
     StrategySettings settings{sequence, decorrelation, {}};
     settings.samples.spp = n;
     settings.samples.seed = 1;
-    settings.parameters.k = k;
-    settings.parameters.s = s;
+    settings.parameters.set("k", k);
+    settings.parameters.set("s", s);
     return summarise(measure_scenes(dimensions == 2 ? scenes_2d() : edges_4d(), dimensions, n,
                                     StrategyPoints(settings, dimensions)));
 }
@@ -105,8 +105,8 @@ TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its un
     constexpr double a = 0.62, b = 0.68;
     StrategySettings settings{"sobol", "micro-jitter", {}};
     settings.samples.spp = n;
-    settings.parameters.k = 1;
-    const double mu = effective_mu(settings.parameters, n);
+    settings.parameters.set("k", 1);
+    const double mu = *make_decorrelation("micro-jitter", settings.parameters, settings.samples)->mu();
     const SamplingStrategy strategy(settings, 2);
     const auto inside = [mu](double x, double limit) {
         double length = 0;
@@ -161,7 +161,7 @@ TEST_CASE("measures: clamping and reflecting at the border, and a new xi for eve
     StrategySettings settings{"sobol", "micro-jitter", {}};
     settings.samples.spp = 256;
     settings.samples.seed = 1;
-    settings.parameters.mu = 0.125;
+    settings.parameters.set("mu", 0.125);
     std::vector<double> a(512), b(512);
     StrategyPoints(settings, 2).fill(77, a);
     JitterVariantPoints(JitterVariant::wrap, *sequence, 2, 256, 0.125, 1).fill(77, b);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tracer/sampling/cycles_distance.hpp"
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "traces/error.hpp"
 
@@ -17,8 +18,13 @@ SamplingStrategy strategy(const std::string& decorrelation, std::uint64_t spp, C
     settings.decorrelation = decorrelation;
     settings.samples.spp = spp;
     settings.samples.seed = 3;
-    settings.parameters.cycles = cycles;
-    settings.parameters.mu = mu;
+    settings.parameters.set("cycles-multiplier", cycles.multiplier);
+    settings.parameters.set("cycles-min-samples", cycles.min_samples);
+    if (cycles.noise_threshold)
+        settings.parameters.set("cycles-noise-threshold", *cycles.noise_threshold);
+    else
+        settings.parameters.set("cycles-noise-threshold", "off");
+    if (mu) settings.parameters.set("mu", *mu);
     return {settings, 8};
 }
 

@@ -20,27 +20,30 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// What make_decorrelation() is given beside a name.
-struct Given : DecorrelationSettings, SampleSet {};
+struct Given {
+    Parameters parameters = {};
+    SampleSet samples = {};
+};
 
 std::unique_ptr<Decorrelation> make(const std::string& name, const Given& given = {}) {
-    return make_decorrelation(name, given, given);
+    return make_decorrelation(name, given.parameters, given.samples);
 }
 
-double effective_mu(const Given& given) { return effective_mu(given, given.spp); }
+double mu_of(const Given& given) { return *make("micro-jitter", given)->mu(); }
 
 Given with_mu(double mu) {
-    Given settings;
-    settings.mu = mu;
-    return settings;
+    Given given;
+    given.parameters.set("mu", mu);
+    return given;
 }
 
 Given with_formula(double k, std::uint64_t n, unsigned s = 2) {
-    Given settings;
-    settings.k = k;
-    settings.s = s;
-    settings.spp = n;
-    settings.width = 1920;
-    return settings;
+    Given given;
+    given.parameters.set("k", k);
+    given.parameters.set("s", s);
+    given.samples.spp = n;
+    given.samples.width = 1920;
+    return given;
 }
 
 /// Calls f(x, pixel, index, dimension) for varied arguments, corners of the ranges included.
@@ -79,7 +82,7 @@ TEST_CASE("sampling: coherent gives every pixel the base point") {
 
 TEST_CASE("sampling: Cranley-Patterson adds the pixel's offset modulo 1, the same for every sample") {
     Given settings;
-    settings.seed = 9;
+    settings.samples.seed = 9;
     const auto rotation = make("cranley-patterson", settings);
     const HashKey key(9, HashPurpose::pixel_offset);
     for_many_places([&](auto x, auto p, auto i, auto d) {
@@ -144,7 +147,7 @@ TEST_CASE("sampling: mu = 0, K = 0, a denormal mu and a mu that rounds to 0 are 
 TEST_CASE("sampling: mu = 1 is Cranley-Patterson up to a global shift of exactly 2^31") {
     for (const std::uint64_t seed : {0ULL, 5ULL, ~0ULL}) {
         Given settings = with_mu(1);
-        settings.seed = seed;
+        settings.samples.seed = seed;
         check_equal_up_to_shift(*make("micro-jitter", settings), *make("cranley-patterson", settings), half);
     }
 }
@@ -152,15 +155,14 @@ TEST_CASE("sampling: mu = 1 is Cranley-Patterson up to a global shift of exactly
 TEST_CASE("sampling: N = 1 with K >= 1 is mu = 1, Cranley-Patterson up to the shift") {
     for (const double k : {1.0, 2.5, 100.0}) {
         const auto settings = with_formula(k, 1);
-        CHECK(effective_mu(settings) == 1.0);
+        CHECK(mu_of(settings) == 1.0);
         check_equal_up_to_shift(*make("micro-jitter", settings), *make("cranley-patterson", settings), half);
     }
 }
 
 TEST_CASE("sampling: K = 4 at N = 10 asks for mu = 1.265, which is clamped to 1 with a warning") {
     const auto settings = with_formula(4, 10);
-    CHECK(requested_mu(settings, settings.spp) == Approx(1.2649).epsilon(1e-4));
-    CHECK(effective_mu(settings) == 1.0);
+    CHECK(mu_of(settings) == 1.0);
     const auto jitter = make("micro-jitter", settings);
     check_equal_up_to_shift(*jitter, *make("micro-jitter", with_mu(1)), 0);
     CHECK_THAT(jitter->warning(), Catch::Contains("mu 1.26491 clamped to 1") && !Catch::Contains("\n"));
@@ -188,15 +190,15 @@ TEST_CASE("sampling: a mu too small to move a float still jitters in fixed point
 }
 
 TEST_CASE("sampling: mu follows K * N^(-1/s)") {
-    CHECK(effective_mu(with_formula(2.5, 1024)) == 0.078125);
-    CHECK(effective_mu(with_formula(1, 64, 1)) == 1.0 / 64);
-    CHECK(effective_mu(with_formula(1, 4096, 3)) == Approx(1.0 / 16).epsilon(1e-14));
-    CHECK(effective_mu(with_formula(0.5, std::uint64_t{1} << 32, 4000000000U)) == Approx(0.5));
-    CHECK(effective_mu(with_formula(2.5, std::uint64_t{1} << 32)) == 2.5 / 65536);
-    CHECK(effective_mu(with_formula(std::numeric_limits<double>::max(), 1)) == 1.0);
+    CHECK(mu_of(with_formula(2.5, 1024)) == 0.078125);
+    CHECK(mu_of(with_formula(1, 64, 1)) == 1.0 / 64);
+    CHECK(mu_of(with_formula(1, 4096, 3)) == Approx(1.0 / 16).epsilon(1e-14));
+    CHECK(mu_of(with_formula(0.5, std::uint64_t{1} << 32, 4000000000U)) == Approx(0.5));
+    CHECK(mu_of(with_formula(2.5, std::uint64_t{1} << 32)) == 2.5 / 65536);
+    CHECK(mu_of(with_formula(std::numeric_limits<double>::max(), 1)) == 1.0);
     Given overridden = with_formula(2.5, 1024);
-    overridden.mu = 0.1;
-    CHECK(effective_mu(overridden) == 0.1);
+    overridden.parameters.set("mu", 0.1);
+    CHECK(mu_of(overridden) == 0.1);
 }
 
 TEST_CASE(
@@ -234,9 +236,9 @@ TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrel
     check_refused(with_mu(not_a_number), "found nan");
     check_refused(with_mu(infinity), "found inf");
     Given classes;
-    classes.interleave = 0;
+    classes.parameters.set("interleave", 0);
     check_refused(classes, "must be 1 to 256, found 0");
-    classes.interleave = 257;
+    classes.parameters.set("interleave", 257);
     check_refused(classes, "must be 1 to 256, found 257");
     CHECK_NOTHROW(make("micro-jitter", with_formula(2.5, std::uint64_t{1} << 32)));
 }
@@ -268,7 +270,7 @@ TEST_CASE("sampling: another seed gives other values, except for coherent") {
     for (const auto& entry : decorrelations()) {
         Given settings = with_formula(2.5, 64);
         const auto a = make(entry.name, settings);
-        settings.seed = 1;
+        settings.samples.seed = 1;
         const auto b = make(entry.name, settings);
         int same = 0;
         for (std::uint32_t p = 0; p < 1000; ++p) same += a->apply(0, p, 0, 0) == b->apply(0, p, 0, 0);

@@ -89,16 +89,15 @@ TEST_CASE("sampling: every defined pair works at the last index, at N = 2^31 and
 
 TEST_CASE("sampling: s = full is all dimensions of the path, after which mu is usually clamped to 1") {
     auto settings = settings_of("sobol", "micro-jitter", 1024);
-    settings.parameters.full_s = true;
+    settings.parameters.set("s", "full");
     const SamplingStrategy full(settings, 26);
     CHECK(full.parameters() == "K=2.5 s=full(26) mu=1");
     CHECK_THAT(full.warnings().at(0), Catch::Contains("clamped to 1"));
-    settings.parameters.full_s = false;
-    settings.parameters.s = 26;
+    settings.parameters.set("s", 26);
     const SamplingStrategy joint(settings, 26);
     CHECK(joint.value(5, 6, 7, 8) == full.value(5, 6, 7, 8));
-    settings.parameters.full_s = true;
-    settings.parameters.k = 1;
+    settings.parameters.set("s", "full");
+    settings.parameters.set("k", 1);
     CHECK(SamplingStrategy(settings, 2).parameters() == "K=1 s=full(2) mu=0.03125");
     CHECK_THROWS_WITH(make_decorrelation("micro-jitter", settings.parameters, settings.samples),
                       Catch::Contains("s = full"));
@@ -106,9 +105,9 @@ TEST_CASE("sampling: s = full is all dimensions of the path, after which mu is u
 
 TEST_CASE("sampling: K from the star discrepancy makes mu its s-th root: 2.17 for the paper's Figure 2") {
     auto settings = settings_of("halton", "micro-jitter", 128);
-    settings.parameters.k_from_discrepancy = true;
+    settings.parameters.set("k", "discrepancy");
     CHECK_THAT(SamplingStrategy(settings, 26).parameters(), Catch::StartsWith("K=discrepancy(2.165"));
-    settings.parameters.s = 1;
+    settings.parameters.set("s", 1);
     CHECK_THAT(SamplingStrategy(settings, 26).parameters(), Catch::StartsWith("K=discrepancy(4.691"));  // its square
     settings.samples.spp = 65537;
     check_refused(settings, "for N up to 65536, found N = 65537");

@@ -1,6 +1,8 @@
 // What the registry says about which parameter a decorrelation reads, held against its values.
 #include <catch2/catch.hpp>
-#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tracer/sampling/sampling_strategy.hpp"
 
@@ -14,7 +16,7 @@ StrategySettings settings_of(const std::string& decorrelation, bool with_mu) {
     settings.sequence = "sobol";
     settings.samples.spp = 1024;
     settings.samples.width = 64;
-    if (with_mu) settings.parameters.mu = 0.5;
+    if (with_mu) settings.parameters.set("mu", 0.5);
     return settings;
 }
 
@@ -29,46 +31,86 @@ bool same_values(const StrategySettings& a, const StrategySettings& b) {
     return true;
 }
 
-struct Change {
-    Parameter parameter;
-    std::function<void(StrategySettings&)> apply;
-};
-
-const std::vector<Change> changes{
-    {Parameter::sequence, [](auto& s) { s.sequence = "sobol-owen-4d"; }},
-    {Parameter::seed, [](auto& s) { s.samples.seed = 9; }},
-    {Parameter::k, [](auto& s) { s.parameters.k = 1.7; }},
-    {Parameter::s, [](auto& s) { s.parameters.s = 3; }},
-    {Parameter::mu, [](auto& s) { s.parameters.mu = 0.3; }},
-    {Parameter::interleave, [](auto& s) { s.parameters.interleave = 5; }},
-    {Parameter::cycles_multiplier, [](auto& s) { s.parameters.cycles.multiplier = 0.5; }},
-    {Parameter::cycles_min_samples, [](auto& s) { s.parameters.cycles.min_samples = 20; }},
-    {Parameter::cycles_noise_threshold, [](auto& s) { s.parameters.cycles.noise_threshold = 0.1; }},
+/// Another value of each parameter there is.
+const std::vector<std::pair<std::string, std::string>> changes{
+    {"k", "1.7"},
+    {"s", "3"},
+    {"mu", "0.3"},
+    {"interleave", "5"},
+    {"cycles-multiplier", "0.5"},
+    {"cycles-min-samples", "20"},
+    {"cycles-noise-threshold", "0.1"},
 };
 
 }  // namespace
 
-TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other", "[slow]") {
+TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other") {
+    REQUIRE(changes.size() == parameter_names().size());
     for (const DecorrelationEntry& entry : decorrelations())
-        for (const bool with_mu : {false, true})
-            for (const Change& change : changes) {
-                INFO(entry.name << (with_mu ? " with mu, " : ", ") << to_string(change.parameter));
-                const StrategySettings before = settings_of(entry.name, with_mu);
+        for (const bool with_mu : {false, true}) {
+            const StrategySettings before = settings_of(entry.name, with_mu);
+            for (const auto& [name, value] : changes) {
+                INFO(entry.name << (with_mu ? " with mu, " : ", ") << name);
                 StrategySettings after = before;
-                change.apply(after);
-                CHECK(entry.reads_parameter(change.parameter, after.parameters) == !same_values(before, after));
+                after.parameters.set(name, value);
+                CHECK(entry.reads_parameter(name, after.parameters) == !same_values(before, after));
+                CHECK((entry.has_parameter(name) || !entry.reads_parameter(name, after.parameters)));
             }
+            StrategySettings other_sequence = before, other_seed = before;
+            other_sequence.sequence = "sobol-owen-4d";
+            other_seed.samples.seed = 9;
+            INFO(entry.name);
+            CHECK(entry.reads_sequence == !same_values(before, other_sequence));
+            CHECK(entry.reads_seed == !same_values(before, other_seed));
+        }
+}
+
+TEST_CASE("sampling: the fallback of a parameter is what it is where it is not given") {
+    for (const DecorrelationEntry& entry : decorrelations())
+        for (const ParameterEntry& parameter : entry.parameters) {
+            INFO(entry.name << ", " << parameter.name);
+            CHECK(std::string(parameter.description).size() > 0);
+            const StrategySettings before = settings_of(entry.name, false);
+            StrategySettings after = before;
+            if (std::string(parameter.fallback).empty()) continue;
+            after.parameters.set(parameter.name, parameter.fallback);
+            CHECK(same_values(before, after));
+        }
+}
+
+TEST_CASE("sampling: a parameter that no decorrelation has is refused with the one that was meant") {
+    Parameters parameters;
+    parameters.set("interleaf", 8);
+    CHECK_THROWS_WITH(check_parameters(parameters), Catch::Contains("unknown parameter 'interleaf'") &&
+                                                        Catch::Contains("did you mean 'interleave'?"));
+}
+
+TEST_CASE("sampling: a value that a parameter cannot have is refused, whoever reads it") {
+    const auto [name, value] = GENERATE(table<std::string, std::string>({{"k", "wide"},
+                                                                         {"k", "-1"},
+                                                                         {"k", "2.5x"},
+                                                                         {"k", ""},
+                                                                         {"k", "full"},
+                                                                         {"s", "2.5"},
+                                                                         {"s", "0"},
+                                                                         {"s", "4294967296"},
+                                                                         {"mu", "off"},
+                                                                         {"interleave", "257"},
+                                                                         {"cycles-noise-threshold", "1.1"}}));
+    Parameters parameters;
+    parameters.set(name, value);
+    CHECK_THROWS_WITH(check_parameters(parameters), Catch::Contains("must be") && Catch::Contains("found " + value));
 }
 
 TEST_CASE("sampling: of Blender's settings, the noise threshold and the minimum samples rule each other out") {
     const DecorrelationEntry& entry = find_decorrelation("scrambling-distance");
-    DecorrelationSettings settings;
-    settings.cycles.min_samples = 24;
-    CHECK_FALSE(entry.reads_parameter(Parameter::cycles_noise_threshold, settings));
-    CHECK(entry.reads_parameter(Parameter::cycles_min_samples, settings));
-    settings.cycles.noise_threshold.reset();  // no adaptive sampling
-    CHECK(entry.reads_parameter(Parameter::cycles_noise_threshold, settings));
-    CHECK_FALSE(entry.reads_parameter(Parameter::cycles_min_samples, settings));
+    Parameters given;
+    given.set("cycles-min-samples", 24);
+    CHECK_FALSE(entry.reads_parameter("cycles-noise-threshold", given));
+    CHECK(entry.reads_parameter("cycles-min-samples", given));
+    given.set("cycles-noise-threshold", "off");
+    CHECK(entry.reads_parameter("cycles-noise-threshold", given));
+    CHECK_FALSE(entry.reads_parameter("cycles-min-samples", given));
 }
 
 TEST_CASE("sampling: a sequence depends on the seed where its entry says so") {

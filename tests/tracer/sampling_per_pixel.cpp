@@ -22,8 +22,7 @@ namespace {
 constexpr std::uint32_t width = 64, pixels = 64 * 64;
 
 SamplingStrategy strategy(const std::string& sequence, const std::string& decorrelation, std::uint64_t spp,
-                          const std::function<void(DecorrelationSettings&)>& change = {},
-                          std::uint32_t dimensions = 8) {
+                          const std::function<void(Parameters&)>& change = {}, std::uint32_t dimensions = 8) {
     StrategySettings settings;
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
@@ -220,7 +219,7 @@ TEST_CASE("sampling: uniform-jitter puts one point in each of the N strata, all 
 
 TEST_CASE("sampling: interleaved shares points inside a class and rotates them between classes, whatever m divides") {
     for (const std::uint32_t m : {1U, 3U, 8U, 64U, 256U}) {
-        const auto s = strategy("halton", "interleaved", 16, [m](auto& p) { p.interleave = m; });
+        const auto s = strategy("halton", "interleaved", 16, [m](auto& p) { p.set("interleave", m); });
         CHECK(s.parameters() == "m=" + std::to_string(m));
         std::set<std::uint32_t> offsets;
         bool same_in_class = true;

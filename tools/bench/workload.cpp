@@ -32,7 +32,7 @@ std::unique_ptr<tracer::Capture> make_capture(const std::string& strategy) {
     settings.trace_samples = 1;
     settings.strategy.decorrelation = strategy;
     settings.strategy.samples.spp = 1024;
-    settings.strategy.parameters.k = 1;
+    settings.strategy.parameters.set("k", 1);
     settings.strategy.samples.seed = 1;
     return std::make_unique<tracer::Capture>(scene(), settings);
 }

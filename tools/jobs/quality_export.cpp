@@ -60,7 +60,7 @@ Json row_json(const QualityRow& row, const std::vector<QualityRow>& all) {
               {"strategy", s.decorrelation},
               {"sequence", s.sequence},
               {"parameters", row.parameters},
-              {"mu", s.parameters.mu ? Json(*s.parameters.mu) : Json(nullptr)},
+              {"mu", s.parameters.has("mu") ? Json(*s.parameters.number("mu")) : Json(nullptr)},
               {"spp", row.spp()},
               {"seed", s.samples.seed}};
     json["unbiased_by_construction"] = tracer::find_decorrelation(s.decorrelation).independent_pixels;
@@ -142,7 +142,7 @@ std::string to_csv(const QualityReport& report) {
         const tracer::StrategySettings& s = row.strategy();
         const tracer::RmseRatio r = row.ratio.value_or(tracer::RmseRatio{{none, none}, {none, none}, {}, false});
         text += fmt::format("{},{},{},{},{},{}", field(report.scene), field(s.decorrelation), field(s.sequence),
-                            field(row.parameters), field(s.parameters.mu.value_or(none)), row.spp());
+                            field(row.parameters), field(s.parameters.number("mu").value_or(none)), row.spp());
         for (const double value :
              {e.rmse.value, e.rmse.half_width, e.rmse.below.value_or(none), r.value.value, r.value.half_width,
               r.value.below.value_or(none), r.value.above.value_or(none),

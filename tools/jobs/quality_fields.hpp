@@ -37,29 +37,28 @@ struct Fields<tracer::PathSettings> {
 };
 
 template <>
-struct Fields<tracer::CyclesSettings> {
-    using S = tracer::CyclesSettings;
-    static constexpr std::tuple all{Field{"multiplier", &S::multiplier}, Field{"min_samples", &S::min_samples},
-                                    Field{"noise_threshold", &S::noise_threshold}};
-};
-
-template <>
 struct Fields<tracer::SampleSet> {
     using S = tracer::SampleSet;
     static constexpr std::tuple all{Field{"spp", &S::spp}, Field{"seed", &S::seed}, Field{"dimensions", &S::dimensions},
                                     Field{"width", &S::width}};
 };
 
+/// {"k": "2.5", …}
 template <>
-struct Fields<tracer::DecorrelationSettings> {
-    using S = tracer::DecorrelationSettings;
-    static constexpr std::tuple all{Field{"k", &S::k},
-                                    Field{"k_from_discrepancy", &S::k_from_discrepancy},
-                                    Field{"s", &S::s},
-                                    Field{"full_s", &S::full_s},
-                                    Field{"mu", &S::mu},
-                                    Field{"cycles", &S::cycles},
-                                    Field{"interleave", &S::interleave}};
+struct Codec<tracer::Parameters> {
+    static Json write(const tracer::Parameters& parameters) {
+        Json object = Json::object();
+        for (const auto& [name, value] : parameters.given()) object[name] = value;
+        return object;
+    }
+    static void read(const Reader& reader, const Json& json, const std::string& place, tracer::Parameters& out) {
+        if (!json.is_object()) reader.wrong(place, "an object {…}", json);
+        for (const auto& [name, value] : json.items()) {
+            std::string text;
+            reader.read(value, join_places(place, name), text);
+            out.set(name, text);
+        }
+    }
 };
 
 template <>

@@ -62,8 +62,9 @@ std::string label(const QualityRow& row, const std::vector<QualityRow>& all) {
     std::string text = row.strategy().decorrelation;
     if (differ(all, [](const QualityRow& r) { return r.strategy().sequence; })) text += " " + row.strategy().sequence;
     if (differ(all, [](const QualityRow& r) { return r.spp(); })) text += fmt::format(" N={}", row.spp());
-    if (row.strategy().parameters.mu && differ(all, [](const QualityRow& r) { return r.strategy().parameters.mu; }))
-        text += fmt::format(" mu={:.4g}", *row.strategy().parameters.mu);
+    if (row.strategy().parameters.has("mu") &&
+        differ(all, [](const QualityRow& r) { return r.strategy().parameters.number("mu"); }))
+        text += fmt::format(" mu={:.4g}", *row.strategy().parameters.number("mu"));
     return text;
 }
 
@@ -95,7 +96,7 @@ void add_notes(QualityReport& report) {
             note(fmt::format("{}: its RMSE against {}'s is {}: no ranking; use --clamp, or the robust error", name,
                              report.baseline, tracer::ratio_text(*row.ratio)));
         if (row.ratio && row.ratio->baseline_is_zero) note(fmt::format("ratio {}", tracer::ratio_text(*row.ratio)));
-        if (row.strategy().decorrelation == "scrambling-distance" && !row.strategy().parameters.mu)
+        if (row.strategy().decorrelation == "scrambling-distance" && !row.strategy().parameters.has("mu"))
             note(
                 "scrambling-distance is Blender's automatic distance with the pattern Tabulated Sobol; a default "
                 "Blender has blue noise, where it is off");

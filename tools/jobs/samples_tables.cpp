@@ -103,8 +103,8 @@ struct Row {
         settings.decorrelation = decorrelation;
         settings.samples.spp = n;
         settings.samples.seed = 1;
-        settings.parameters.k = k;
-        settings.parameters.s = s;
+        settings.parameters.set("k", k);
+        settings.parameters.set("s", s);
         return settings;
     }
     FieldError measure(const TestScenes& scenes, std::uint32_t dimensions, std::uint32_t n) const {

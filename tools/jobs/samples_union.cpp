@@ -20,7 +20,7 @@ constexpr std::size_t histogram_lines = 12;
 
 void check_size(const StrategySettings& strategy, std::uint32_t a, std::uint32_t b, std::uint64_t copies) {
     check_spp(strategy.samples.spp);
-    check_settings(strategy.parameters);
+    check_parameters(strategy.parameters);
     const std::uint32_t dimensions = make_sequence(strategy.sequence)->dimensions();
     if (std::max(a, b) >= dimensions || a == b)
         throw UsageError(fmt::format("--dimensions {},{}; expected two different ones, 0 to {} for sequence '{}'", a, b,

@@ -5,29 +5,39 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <set>
 
 #include "tools/jobs/numbers.hpp"
 #include "tools/jobs/version.hpp"
+#include "tracer/sampling/pixel_place.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
 
-/// The options that the strategy reads: another command with them would be warned of (idle_options.hpp).
-std::string parameter_command(const SamplingSettings& sampling, const tracer::CaptureSettings& settings) {
+/// Parameters with an option of their own.
+const std::set<std::string> sampling_options{
+    "k", "s", "mu", "cycles-multiplier", "cycles-min-samples", "cycles-noise-threshold", "interleave"};
+
+/// The parameters that the strategy or its thread map reads: another command with them would be warned of
+/// (idle_options.hpp). Those that have their default are left out, but for K and s.
+std::string parameter_command(const tracer::CaptureSettings& settings) {
     const tracer::DecorrelationEntry& entry = tracer::find_decorrelation(settings.strategy.decorrelation);
-    const auto reads = [&](tracer::Parameter p) { return entry.reads_parameter(p, settings.strategy.parameters); };
+    const tracer::Parameters& given = settings.strategy.parameters;
     std::string text;
-    if (reads(tracer::Parameter::k)) text += fmt::format(" --k {} --s {}", sampling.k, sampling.s);
-    if (reads(tracer::Parameter::mu)) text += " --mu " + sampling.mu;
-    if (reads(tracer::Parameter::cycles_multiplier) && sampling.cycles_multiplier != 1)
-        text += fmt::format(" --cycles-multiplier {}", sampling.cycles_multiplier);
-    if (reads(tracer::Parameter::cycles_min_samples) && sampling.cycles_min_samples != 0)
-        text += fmt::format(" --cycles-min-samples {}", sampling.cycles_min_samples);
-    if (reads(tracer::Parameter::cycles_noise_threshold) && sampling.cycles_noise_threshold != "0.01")
-        text += " --cycles-noise-threshold " + sampling.cycles_noise_threshold;
-    const bool classes = reads(tracer::Parameter::interleave) || settings.thread_map == tracer::ThreadMap::classes;
-    if (classes && sampling.interleave != 8) text += fmt::format(" --interleave {}", sampling.interleave);
+    const auto add = [&](const std::string& name, const char* fallback) {
+        if (!given.has(name) || given.text(name) == fallback) return;
+        text += sampling_options.contains(name) ? fmt::format(" --{} {}", name, given.text(name))
+                                                : fmt::format(" --param {}={}", name, given.text(name));
+    };
+    for (const char* always : {"k", "s", "mu"})
+        if (entry.reads_parameter(always, given)) add(always, "");
+    for (const std::string& name : tracer::parameter_names()) {
+        if (name == "k" || name == "s" || name == "mu") continue;
+        const bool of_map =
+            name == tracer::interleave_parameter.name && settings.thread_map == tracer::ThreadMap::classes;
+        if (of_map || entry.reads_parameter(name, given)) add(name, tracer::find_parameter(name).fallback);
+    }
     return text;
 }
 
@@ -76,21 +86,30 @@ tracer::StrategySettings SamplingSettings::strategy(const std::string& sequence,
     tracer::StrategySettings settings;
     settings.sequence = sequence;
     settings.decorrelation = decorrelation;
-    tracer::DecorrelationSettings& p = settings.parameters;
     settings.samples.spp = spp;
     settings.samples.seed = seed;
     settings.samples.width = parse_resolution(resolution).width;
-    p.interleave = interleave;
-    p.k_from_discrepancy = k == "discrepancy";
-    if (!p.k_from_discrepancy) p.k = read_real(k, "--k", {});
-    p.full_s = s == "full";
-    if (!p.full_s) p.s = static_cast<unsigned>(read_whole(s, "--s", {1, std::numeric_limits<unsigned>::max()}));
-    if (!mu.empty()) p.mu = read_real(mu, "--mu", {});
-    p.cycles.multiplier = cycles_multiplier;
-    p.cycles.min_samples = cycles_min_samples;
-    p.cycles.noise_threshold.reset();
-    if (cycles_noise_threshold != "off")
-        p.cycles.noise_threshold = read_real(cycles_noise_threshold, "--cycles-noise-threshold", {0, 1});
+    tracer::Parameters& p = settings.parameters;
+    if (k != "discrepancy") read_real(k, "--k", {});
+    p.set("k", k);
+    if (s != "full") read_whole(s, "--s", {1, std::numeric_limits<unsigned>::max()});
+    p.set("s", s);
+    if (!mu.empty()) {
+        read_real(mu, "--mu", {});
+        p.set("mu", mu);
+    }
+    p.set("cycles-multiplier", cycles_multiplier);
+    p.set("cycles-min-samples", cycles_min_samples);
+    if (cycles_noise_threshold != "off") read_real(cycles_noise_threshold, "--cycles-noise-threshold", {0, 1});
+    p.set("cycles-noise-threshold", cycles_noise_threshold);
+    p.set("interleave", interleave);
+    for (const std::string& one : parameters) {
+        const std::size_t at = one.find('=');
+        if (at == std::string::npos)
+            throw UsageError(fmt::format("--param '{}'; expected NAME=VALUE such as mu=0.1", one));
+        p.set(one.substr(0, at), one.substr(at + 1));
+    }
+    tracer::check_parameters(p);
     return settings;
 }
 
@@ -119,7 +138,7 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
         "--thread-map {}{} --seed {}{}",
         scene.command(), decorrelation, one.sequence, one.spp, std::min(sampling.trace_samples, one.spp), size.width,
         size.height, sampling.bounces, path_command(sampling), tracer::to_string(settings.thread_map),
-        parameter_command(sampling, settings), sampling.seed,
+        parameter_command(settings), sampling.seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;
 }

@@ -28,6 +28,7 @@ struct SamplingSettings {
     std::uint64_t cycles_min_samples = 0;
     std::string cycles_noise_threshold = "0.01";  ///< or "off"
     unsigned interleave = 8;
+    std::vector<std::string> parameters;  ///< "NAME=VALUE" of any parameter; rule over the members above
     std::uint64_t seed = 1;
 
     std::uint64_t trace_samples = 8;

@@ -7,12 +7,12 @@
 
 #include "tools/program/console.hpp"
 #include "tools/program/options.hpp"
+#include "tracer/sampling/pixel_place.hpp"
 
 namespace raycache::tools {
 namespace {
 
 using Case = tracer::CaptureSettings;
-using tracer::Parameter;
 
 struct Context {
     const Command& command;
@@ -31,51 +31,56 @@ struct Context {
 /// Why a case does not read the option; empty where it does.
 using Rule = std::function<std::string(const Case&, const Context&)>;
 
-std::string readers_of(Parameter parameter) {
+/// "A, B do": of the decorrelations.
+template <class Reads>
+std::string readers_of(const Reads& reads) {
     std::string names;
     std::size_t count = 0;
     for (const auto& entry : tracer::decorrelations()) {
-        const bool always = entry.reads_parameter(parameter, {});
-        tracer::DecorrelationSettings with_mu;
-        with_mu.mu = 0.5;
-        if (!always && !entry.reads_parameter(parameter, with_mu)) continue;
+        if (!reads(entry)) continue;
         names += (names.empty() ? "" : ", ") + entry.name;
         ++count;
     }
     return fmt::format("{} do{}", names, count == 1 ? "es" : "");
 }
 
-/// An option beside which the decorrelation does not read that parameter.
-std::string shadowing_option(const tracer::DecorrelationEntry& entry, Parameter parameter,
-                             const tracer::DecorrelationSettings& settings) {
-    tracer::DecorrelationSettings other = settings;
-    other.mu.reset();
-    if (settings.mu && entry.reads_parameter(parameter, other)) return "--mu";
-    other = settings;
-    other.cycles.min_samples = 0;
-    if (entry.reads_parameter(parameter, other)) return "--cycles-min-samples";
-    other = settings;
-    other.cycles.noise_threshold = 0.01;
-    if (entry.reads_parameter(parameter, other)) return "--cycles-noise-threshold off";
+/// The parameter beside which the decorrelation does not read that one: "--mu", "--cycles-noise-threshold off".
+std::string shadowing_option(const tracer::DecorrelationEntry& entry, const std::string& name,
+                             const tracer::Parameters& given) {
+    for (const tracer::ParameterEntry& other : entry.parameters) {
+        if (other.name == name || !given.has(other.name)) continue;
+        tracer::Parameters without = given;
+        without.unset(other.name);
+        if (entry.reads_parameter(name, without))
+            return fmt::format("--{}{}", other.name, given.is_word(other) ? fmt::format(" {}", other.word) : "");
+    }
     return {};
 }
 
-std::string unread(Parameter parameter, const Case& c) {
+std::string unread(const std::string& name, const Case& c) {
     const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
-    const auto& settings = c.strategy.parameters;
-    if (entry.reads_parameter(parameter, settings)) return {};
-    const std::string beside = shadowing_option(entry, parameter, settings);
+    const auto& given = c.strategy.parameters;
+    if (entry.reads_parameter(name, given)) return {};
+    const std::string beside = shadowing_option(entry, name, given);
     if (!beside.empty()) return fmt::format("{} is given, which takes its place", beside);
-    return fmt::format("{} does not read it ({})", entry.name, readers_of(parameter));
+    return fmt::format("{} does not read it ({})", entry.name,
+                       readers_of([&](const auto& other) { return other.has_parameter(name); }));
 }
 
-Rule parameter_rule(Parameter parameter) {
-    return [parameter](const Case& c, const Context&) { return unread(parameter, c); };
+Rule parameter_rule(const std::string& name) {
+    return [name](const Case& c, const Context&) { return unread(name, c); };
+}
+
+std::string sequence_rule(const Case& c, const Context&) {
+    const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
+    if (entry.reads_sequence) return {};
+    return fmt::format("{} does not read it ({})", entry.name,
+                       readers_of([](const auto& other) { return other.reads_sequence; }));
 }
 
 std::string seed_rule(const Case& c, const Context& context) {
     const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
-    if (entry.reads_parameter(Parameter::seed, c.strategy.parameters)) return {};
+    if (entry.reads_seed) return {};
     const auto& all = tracer::sequences();
     const auto sequence =
         std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == c.strategy.sequence; });
@@ -96,7 +101,7 @@ std::string trace_samples_rule(const Case& c, const Context& context) {
 
 std::string interleave_rule(const Case& c, const Context& context) {
     if (context.use.launches && c.thread_map == tracer::ThreadMap::classes) return {};
-    return unread(Parameter::interleave, c);
+    return unread("interleave", c);
 }
 
 std::string thread_map_rule(const Case& c, const Context& context) {
@@ -116,13 +121,13 @@ struct OptionRule {
 
 const std::vector<OptionRule>& rules() {
     static const std::vector<OptionRule> all{
-        {"--sequence", parameter_rule(Parameter::sequence)},
-        {"--k", parameter_rule(Parameter::k)},
-        {"--s", parameter_rule(Parameter::s)},
-        {"--mu", parameter_rule(Parameter::mu)},
-        {"--cycles-multiplier", parameter_rule(Parameter::cycles_multiplier)},
-        {"--cycles-min-samples", parameter_rule(Parameter::cycles_min_samples)},
-        {"--cycles-noise-threshold", parameter_rule(Parameter::cycles_noise_threshold)},
+        {"--sequence", sequence_rule},
+        {"--k", parameter_rule("k")},
+        {"--s", parameter_rule("s")},
+        {"--mu", parameter_rule("mu")},
+        {"--cycles-multiplier", parameter_rule("cycles-multiplier")},
+        {"--cycles-min-samples", parameter_rule("cycles-min-samples")},
+        {"--cycles-noise-threshold", parameter_rule("cycles-noise-threshold")},
         {"--interleave", interleave_rule},
         {"--seed", seed_rule},
         {"--trace-samples", trace_samples_rule},
@@ -166,20 +171,24 @@ std::vector<std::string> idle_options(const Command& command, std::span<const tr
                                       const CaseUse& use) {
     const Context context{command, use};
     std::vector<std::string> lines;
-    for (const OptionRule& rule : rules()) {
-        if (!context.given(rule.option) || cases.empty()) continue;
+    const auto add = [&](const std::string& option, const Rule& why_unread) {
         std::vector<std::string> reasons;
         for (const Case& c : cases) {
-            const std::string reason = rule.why_unread(c, context);
-            if (reason.empty()) {
-                reasons.clear();
-                break;
-            }
+            const std::string reason = why_unread(c, context);
+            if (reason.empty()) return;
             if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(reason);
         }
-        if (!reasons.empty())
-            lines.push_back(fmt::format("{} has no effect: {}", rule.option, fmt::join(reasons, "; ")));
-    }
+        lines.push_back(fmt::format("{} has no effect: {}", option, fmt::join(reasons, "; ")));
+    };
+    if (cases.empty()) return lines;
+    for (const OptionRule& rule : rules())
+        if (context.given(rule.option)) add(rule.option, rule.why_unread);
+    if (const Option* given = command.find_option("--param"))
+        for (const std::string& word : given->words()) {
+            const std::string name = word.substr(0, word.find('='));
+            add("--param " + name,
+                name == tracer::interleave_parameter.name ? Rule(interleave_rule) : parameter_rule(name));
+        }
     return lines;
 }
 

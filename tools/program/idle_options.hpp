@@ -1,5 +1,5 @@
 // Options that were given and that nothing reads under the other settings. One table says which option is read when;
-// for the parameters of sampling the registry of decorrelations says it (DecorrelationEntry::reads).
+// for the parameters of sampling the registry of decorrelations says it (DecorrelationEntry::reads_parameter()).
 #pragma once
 
 #include <span>

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tracer/sampling/decorrelation.hpp"
+#include "tracer/sampling/pixel_place.hpp"
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene_name.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
@@ -154,6 +155,17 @@ void SamplingOptions::add_strategy(Command& command) {
         .add_option("--interleave", interleave,
                     "M of the M x M pixel classes of interleaved, net-micro-jitter-fast and the thread map classes")
         ->range(std::uint64_t{1}, tracer::max_interleave);
+    command
+        .add_option("--param", parameters,
+                    "any parameter of a strategy by its name; rules over the option of the same name")
+        ->repeated()
+        ->type_name("NAME=VALUE")
+        ->check([](std::string& word) {
+            const std::size_t at = word.find('=');
+            if (at == std::string::npos)
+                throw UsageError(fmt::format("--param '{}'; expected NAME=VALUE such as mu=0.1", word));
+            tracer::check_parameter(tracer::find_parameter(word.substr(0, at)), word.substr(at + 1));
+        });
     command.add_option("--seed", seed, "seed of jitter, random numbers and the choice of sample indices");
     command.group("");
 }

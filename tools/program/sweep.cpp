@@ -33,7 +33,7 @@ std::string speed_text(const QualityRow& row) {
 }
 
 std::string describe(const QualityRow& row) {
-    const double mu = *row.strategy().parameters.mu;
+    const double mu = *row.strategy().parameters.number("mu");
     const bool number = row.ratio->value.resolved() || row.ratio->value.below || row.ratio->value.above;
     return fmt::format("mu {:.4g} (K {:.3g}): speed {}, R8 {}, RMSE {}{}", mu,
                        mu * std::sqrt(static_cast<double>(row.spp())), speed_text(row),
@@ -42,7 +42,7 @@ std::string describe(const QualityRow& row) {
 
 const QualityRow& row_of(double mu, const QualityReport& report) {
     return *std::find_if(report.rows.begin(), report.rows.end(),
-                         [&](const QualityRow& r) { return r.strategy().parameters.mu == mu; });
+                         [&](const QualityRow& r) { return r.strategy().parameters.number("mu") == mu; });
 }
 
 /// Whether that row is certainly faster than the baseline, or what would tell.
@@ -90,15 +90,14 @@ Recommendation recommend(const Options& o, const QualityReport& report) {
     const tracer::SweepLimits limits{o.max_r8, o.max_rmse};
     std::vector<tracer::SweepPoint> points;
     for (const QualityRow& row : report.rows)
-        if (row.strategy().parameters.mu) points.push_back({*row.strategy().parameters.mu, row.errors.r8, *row.ratio});
+        if (row.strategy().parameters.has("mu"))
+            points.push_back({*row.strategy().parameters.number("mu"), row.errors.r8, *row.ratio});
     const auto advice = tracer::advise(points, limits, {o.common.repeats, o.common.reference_spp});
     return {advice_text(o, report, advice), advice, limits};
 }
 
 Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
-    tracer::DecorrelationSettings with_mu;
-    with_mu.mu = 1;
-    if (!tracer::find_decorrelation(o->swept).reads_parameter(tracer::Parameter::mu, with_mu))
+    if (!tracer::find_decorrelation(o->swept).has_parameter("mu"))
         throw UsageError(
             fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o->swept));
     for (const auto& [option, value] : {std::pair("--max-r8", o->max_r8), std::pair("--max-rmse", o->max_rmse)})

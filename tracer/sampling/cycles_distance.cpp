@@ -1,27 +1,9 @@
 #include "tracer/sampling/cycles_distance.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "traces/error.hpp"
-
 namespace raycache::tracer {
-
-void check_cycles(const CyclesSettings& settings) {
-    if (!std::isfinite(settings.multiplier) || settings.multiplier < 0)
-        throw UsageError(fmt::format(
-            "sampling: the multiplier of the scrambling distance must be a number of 0 or more, found {}: give "
-            "--cycles-multiplier 1, Blender's default",
-            settings.multiplier));
-    const double threshold = settings.noise_threshold.value_or(0);
-    if (!(threshold >= 0 && threshold <= 1))
-        throw UsageError(
-            fmt::format("sampling: the noise threshold must be 0 to 1, found {}: give --cycles-noise-threshold 0.01, "
-                        "Blender's default, or off",
-                        threshold));
-}
 
 std::uint64_t cycles_samples(const CyclesSettings& settings, std::uint64_t spp) {
     if (!settings.noise_threshold) return spp;

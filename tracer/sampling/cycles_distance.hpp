@@ -17,11 +17,9 @@ struct CyclesSettings {
     std::optional<double> noise_threshold = 0.01;  ///< Noise Threshold, 0 … 1; 0: automatic; none: no adaptive sampling
 };
 
-/// Throws UsageError for a multiplier that is negative or not finite, and a threshold outside 0 … 1.
-void check_cycles(const CyclesSettings&);
-
 /// How many samples the distance is made for: N without adaptive sampling, else at most the minimum samples (of which
-/// Cycles takes at least 4, and with a threshold of 0 those of max(0.001, 1/N)). Precondition: check_cycles() passes.
+/// Cycles takes at least 4, and with a threshold of 0 those of max(0.001, 1/N)). Precondition: the settings are in
+/// range.
 std::uint64_t cycles_samples(const CyclesSettings&, std::uint64_t spp);
 
 /// The distance before the clamp: 1 or more means off.

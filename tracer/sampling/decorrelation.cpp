@@ -5,80 +5,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
-#include "tracer/sampling/measures/star_discrepancy.hpp"
 #include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
-
-namespace {
-
-void check_nonnegative(const char* name, double value, const char* example) {
-    if (!std::isfinite(value) || value < 0) {
-        throw UsageError(fmt::format("sampling: {} must be a number of 0 or more, found {}: give {} such as {}", name,
-                                     value, name, example));
-    }
-}
-
-}  // namespace
-
-void check_settings(const DecorrelationSettings& settings) {
-    check_nonnegative("K", settings.k, "2.5");
-    if (settings.s == 0) {
-        throw UsageError(
-            "sampling: the dimension s of mu = K * N^(-1/s) must be 1 or more, found 0: give s = 2, the default");
-    }
-    if (settings.interleave == 0 || settings.interleave > max_interleave) {
-        throw UsageError(fmt::format(
-            "sampling: the M of M x M pixel classes must be 1 to {}, found {}: give --interleave 8, the default",
-            max_interleave, settings.interleave));
-    }
-    if (settings.mu) check_nonnegative("mu", *settings.mu, "0.1");
-    check_cycles(settings.cycles);
-}
-
-double requested_mu(const DecorrelationSettings& settings, std::uint64_t spp) {
-    if (settings.mu) return *settings.mu;
-    const auto n = static_cast<double>(spp);
-    // The two common cases need no pow(), whose last digit depends on the C library and processor.
-    if (settings.s == 1) return settings.k / n;
-    if (settings.s == 2) return settings.k / std::sqrt(n);
-    return settings.k / std::pow(n, 1.0 / settings.s);
-}
-
-double scrambling_distance(const DecorrelationSettings& settings, std::uint64_t spp) {
-    return settings.mu ? *settings.mu : cycles_distance(settings.cycles, spp);
-}
-
-double effective_mu(const DecorrelationSettings& settings, std::uint64_t spp) {
-    return std::min(1.0, requested_mu(settings, spp));
-}
-
-DecorrelationSettings resolve_k_and_s(const DecorrelationSettings& settings, const SampleSet& samples,
-                                      const Sequence& sequence) {
-    DecorrelationSettings resolved = settings;
-    if (settings.full_s) {
-        if (samples.dimensions == 0)
-            throw UsageError(
-                "sampling: s = full needs the number of dimensions of a path, found none: give s as a number");
-        resolved.s = samples.dimensions;
-    }
-    if (settings.k_from_discrepancy) {
-        if (samples.spp > max_star_discrepancy_points) {
-            throw UsageError(fmt::format(
-                "sampling: K from the star discrepancy is computed exactly, for N up to {}, found N = {}: give K as a "
-                "number such as 2.5",
-                max_star_discrepancy_points, samples.spp));
-        }
-        std::vector<FixedPoint2> points;
-        for (std::uint32_t i = 0; i < samples.spp; ++i)
-            points.push_back({sequence.sample(i, 0), sequence.sample(i, 1)});
-        resolved.k = std::pow(static_cast<double>(samples.spp) * star_discrepancy(points), 1.0 / resolved.s);
-    }
-    return resolved;
-}
 
 void require_net(const std::string& decorrelation, const Sequence& sequence, unsigned s) {
     const auto fits = [s](const Sequence& q) { return q.net_dimensions() != 0 && q.net_dimensions() % s == 0; };
@@ -99,33 +30,35 @@ unsigned require_power_of_two(const std::string& decorrelation, std::uint64_t sp
                     decorrelation, spp, std::bit_floor(spp), std::bit_ceil(spp)));
 }
 
-const char* to_string(Parameter parameter) {
-    switch (parameter) {
-        case Parameter::sequence:
-            return "sequence";
-        case Parameter::seed:
-            return "seed";
-        case Parameter::k:
-            return "k";
-        case Parameter::s:
-            return "s";
-        case Parameter::mu:
-            return "mu";
-        case Parameter::interleave:
-            return "interleave";
-        case Parameter::cycles_multiplier:
-            return "cycles-multiplier";
-        case Parameter::cycles_min_samples:
-            return "cycles-min-samples";
-        case Parameter::cycles_noise_threshold:
-            return "cycles-noise-threshold";
-    }
-    return "";
+bool DecorrelationEntry::has_parameter(const std::string& parameter) const {
+    return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return parameter == p.name; });
 }
 
-bool DecorrelationEntry::reads_parameter(Parameter parameter, const DecorrelationSettings& settings) const {
-    const std::vector<Parameter> all = reads(settings);
+bool DecorrelationEntry::reads_parameter(const std::string& parameter, const Parameters& given) const {
+    if (!reads) return has_parameter(parameter);
+    const std::vector<std::string> all = reads(given);
     return std::find(all.begin(), all.end(), parameter) != all.end();
+}
+
+std::vector<std::string> parameter_names() {
+    std::vector<std::string> names;
+    for (const DecorrelationEntry& entry : decorrelations())
+        for (const ParameterEntry& p : entry.parameters)
+            if (std::find(names.begin(), names.end(), p.name) == names.end()) names.emplace_back(p.name);
+    return names;
+}
+
+const ParameterEntry& find_parameter(const std::string& name) {
+    for (const DecorrelationEntry& entry : decorrelations())
+        for (const ParameterEntry& p : entry.parameters)
+            if (name == p.name) return p;
+    const std::vector<std::string> names = parameter_names();
+    throw UsageError(fmt::format("sampling: unknown parameter '{}'; expected one of: {}{}", name,
+                                 fmt::join(names, ", "), did_you_mean(name, names)));
+}
+
+void check_parameters(const Parameters& given) {
+    for (const auto& [name, value] : given.given()) check_parameter(find_parameter(name), value);
 }
 
 const DecorrelationEntry& find_decorrelation(const std::string& name) {
@@ -140,17 +73,17 @@ const DecorrelationEntry& find_decorrelation(const std::string& name) {
     return *found;
 }
 
-std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings,
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const Parameters& parameters,
                                                   const SampleSet& samples, const Sequence& sequence) {
     const DecorrelationEntry& entry = find_decorrelation(name);
     check_spp(samples.spp);
-    check_settings(settings);
-    return entry.make(settings, samples, sequence);
+    check_parameters(parameters);
+    return entry.make(parameters, samples, sequence);
 }
 
-std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const DecorrelationSettings& settings,
+std::unique_ptr<Decorrelation> make_decorrelation(const std::string& name, const Parameters& parameters,
                                                   const SampleSet& samples) {
-    return make_decorrelation(name, settings, samples, *make_sequence("sobol"));
+    return make_decorrelation(name, parameters, samples, *make_sequence("sobol"));
 }
 
 }  // namespace raycache::tracer

@@ -6,9 +6,24 @@
 #include <cstdint>
 #include <string>
 
+#include "tracer/sampling/parameters.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
+
+/// The m of m x m pixel classes: of every decorrelation that has them, and of the thread map `classes`.
+inline constexpr std::uint32_t max_interleave = 256;
+inline constexpr ParameterEntry interleave_parameter{.name = "interleave",
+                                                     .description = "M of the M x M pixel classes",
+                                                     .fallback = "8",
+                                                     .label = "the M of M x M pixel classes",
+                                                     .remedy = "give --interleave 8, the default",
+                                                     .whole = true,
+                                                     .least = 1,
+                                                     .most = max_interleave};
+inline std::uint32_t interleave_of(const Parameters& parameters) {
+    return static_cast<std::uint32_t>(parameters.whole(interleave_parameter));
+}
 
 struct PixelPlace {
     std::uint32_t x = 0, y = 0;

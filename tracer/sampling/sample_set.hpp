@@ -1,5 +1,5 @@
 // The points of a picture's pixels: how many, of how many dimensions, drawn from which seed. What sequences and
-// decorrelations have in common; what one of them may be given besides is DecorrelationSettings.
+// decorrelations have in common; what a decorrelation may be given besides is its Parameters.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ private:
 SamplingStrategy::SamplingStrategy(const StrategySettings& settings, std::uint32_t dimensions)
     : settings_(settings), dimensions_(dimensions), sequence_(make_sequence(settings.sequence, settings.samples.seed)) {
     check_spp(settings.samples.spp);
-    check_settings(settings.parameters);
+    check_parameters(settings.parameters);
     if (dimensions > sequence_->dimensions()) {
         throw UsageError(fmt::format(
             "sampling: sequence '{}' must have a dimension for every random number of a path, expected at most {}, "
@@ -83,8 +83,7 @@ std::vector<std::string> SamplingStrategy::warnings() const {
     if (const std::string line = decorrelation_->warning(); !line.empty()) lines.push_back(line);
     const std::uint64_t n = settings_.samples.spp;
     const DecorrelationEntry& entry = find_decorrelation(settings_.decorrelation);
-    if (sequence_->net_dimensions() != 0 && !std::has_single_bit(n) &&
-        entry.reads_parameter(Parameter::sequence, settings_.parameters))
+    if (sequence_->net_dimensions() != 0 && !std::has_single_bit(n) && entry.reads_sequence)
         lines.push_back(fmt::format(
             "N = {} is no power of two: the points of sequence '{}' are then no whole net and spread less evenly; "
             "choose {} or {}",

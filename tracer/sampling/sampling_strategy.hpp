@@ -19,7 +19,7 @@ struct StrategySettings {
     std::string sequence = "sobol";
     std::string decorrelation = "micro-jitter";
     SampleSet samples;
-    DecorrelationSettings parameters;
+    Parameters parameters;  ///< of the decorrelation
     /// q: dimensions 2q and 2q + 1 get what `random` would give them, to see what error a pair of dimensions causes.
     std::optional<std::uint32_t> independent_pair{};
 };

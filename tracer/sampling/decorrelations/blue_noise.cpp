@@ -49,12 +49,10 @@ private:
 }  // namespace
 
 DecorrelationEntry blue_noise_entry() {
-    return {"blue-noise", "Cranley-Patterson rotation by a blue-noise mask: neighbours' offsets lie far apart",
-            [](const DecorrelationSettings&, const SampleSet& samples, const Sequence& sequence)
-                -> std::unique_ptr<Decorrelation> { return std::make_unique<BlueNoise>(samples, sequence); },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed};
-            }};
+    return {.name = "blue-noise",
+            .description = "Cranley-Patterson rotation by a blue-noise mask: neighbours' offsets lie far apart",
+            .make = [](const Parameters&, const SampleSet& samples, const Sequence& sequence)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<BlueNoise>(samples, sequence); }};
 }
 
 }  // namespace raycache::tracer

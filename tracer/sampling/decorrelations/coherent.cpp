@@ -14,11 +14,12 @@ public:
 }  // namespace
 
 DecorrelationEntry coherent_entry() {
-    return {"coherent", "the same points for every pixel",
-            [](const DecorrelationSettings&, const SampleSet&, const Sequence&) -> std::unique_ptr<Decorrelation> {
+    return {.name = "coherent",
+            .description = "the same points for every pixel",
+            .make = [](const Parameters&, const SampleSet&, const Sequence&) -> std::unique_ptr<Decorrelation> {
                 return std::make_unique<Coherent>();
             },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> { return {Parameter::sequence}; }};
+            .reads_seed = false};
 }
 
 }  // namespace raycache::tracer

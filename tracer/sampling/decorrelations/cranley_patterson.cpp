@@ -24,17 +24,12 @@ private:
 }  // namespace
 
 DecorrelationEntry cranley_patterson_entry() {
-    return {
-        "cranley-patterson",
-        "a random offset in [0, 1) per pixel and dimension, modulo 1",
-        [](const DecorrelationSettings&, const SampleSet& samples, const Sequence&) -> std::unique_ptr<Decorrelation> {
-            return std::make_unique<CranleyPatterson>(samples.seed);
-        },
-        [](const DecorrelationSettings&) -> std::vector<Parameter> {
-            return {Parameter::sequence, Parameter::seed};
-        },
-        false,
-        true};
+    return {.name = "cranley-patterson",
+            .description = "a random offset in [0, 1) per pixel and dimension, modulo 1",
+            .make = [](const Parameters&, const SampleSet& samples, const Sequence&) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<CranleyPatterson>(samples.seed);
+            },
+            .independent_pixels = true};
 }
 
 }  // namespace raycache::tracer

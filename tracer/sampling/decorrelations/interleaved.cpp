@@ -14,10 +14,10 @@ namespace {
 
 class Interleaved final : public Decorrelation {
 public:
-    Interleaved(const DecorrelationSettings& settings, const SampleSet& samples)
+    Interleaved(const Parameters& parameters, const SampleSet& samples)
         : key_(samples.seed, HashPurpose::class_offset),
           places_("interleaved", samples.width),
-          m_(settings.interleave) {}
+          m_(interleave_of(parameters)) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
         return x + pixel_offset(key_, places_.class_of(pixel, m_), dimension);  // wraps: modulo 1 in fixed point
@@ -33,13 +33,12 @@ private:
 }  // namespace
 
 DecorrelationEntry interleaved_entry() {
-    return {"interleaved", "m x m pixel classes, each with an offset of its own, the same points inside a class",
-            [](const DecorrelationSettings& settings, const SampleSet& samples, const Sequence&)
-                -> std::unique_ptr<Decorrelation> { return std::make_unique<Interleaved>(settings, samples); },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed, Parameter::interleave};
-            },
-            true};
+    return {.name = "interleaved",
+            .description = "m x m pixel classes, each with an offset of its own, the same points inside a class",
+            .make = [](const Parameters& parameters, const SampleSet& samples, const Sequence&)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<Interleaved>(parameters, samples); },
+            .parameters = {interleave_parameter},
+            .has_classes = true};
 }
 
 }  // namespace raycache::tracer

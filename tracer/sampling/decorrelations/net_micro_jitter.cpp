@@ -32,13 +32,10 @@ private:
 }  // namespace
 
 DecorrelationEntry net_micro_jitter_entry() {
-    return {"net-micro-jitter",
-            "leading bits of a net shared, the rest Owen-scrambled per pixel; unbiased in sets of 4",
-            [](const DecorrelationSettings&, const SampleSet& samples, const Sequence& sequence)
-                -> std::unique_ptr<Decorrelation> { return std::make_unique<NetMicroJitter>(samples, sequence); },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed};
-            }};
+    return {.name = "net-micro-jitter",
+            .description = "leading bits of a net shared, the rest Owen-scrambled per pixel; unbiased in sets of 4",
+            .make = [](const Parameters&, const SampleSet& samples, const Sequence& sequence)
+                -> std::unique_ptr<Decorrelation> { return std::make_unique<NetMicroJitter>(samples, sequence); }};
 }
 
 }  // namespace raycache::tracer

@@ -18,12 +18,12 @@ namespace {
 
 class FastNetMicroJitter final : public Decorrelation {
 public:
-    FastNetMicroJitter(const DecorrelationSettings& settings, const SampleSet& samples, const Sequence& sequence)
+    FastNetMicroJitter(const Parameters& parameters, const SampleSet& samples, const Sequence& sequence)
         : bits_("net-micro-jitter-fast", 2, samples, sequence),
           places_("net-micro-jitter-fast", samples.width),
           class_key_(samples.seed, HashPurpose::class_scramble),
           pixel_key_(samples.seed, HashPurpose::pixel_scramble),
-          m_(settings.interleave) {}
+          m_(interleave_of(parameters)) {}
 
     std::uint32_t apply(std::uint32_t x, std::uint32_t pixel, std::uint32_t, std::uint32_t dimension) const override {
         const std::uint32_t shared = bits_.mask(dimension);
@@ -43,15 +43,14 @@ private:
 }  // namespace
 
 DecorrelationEntry net_micro_jitter_fast_entry() {
-    return {"net-micro-jitter-fast", "the same in sets of 2, with a net of its own for each of m x m pixel classes",
-            [](const DecorrelationSettings& settings, const SampleSet& samples,
-               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                return std::make_unique<FastNetMicroJitter>(settings, samples, sequence);
+    return {.name = "net-micro-jitter-fast",
+            .description = "the same in sets of 2, with a net of its own for each of m x m pixel classes",
+            .make = [](const Parameters& parameters, const SampleSet& samples,
+                       const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<FastNetMicroJitter>(parameters, samples, sequence);
             },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed, Parameter::interleave};
-            },
-            true};
+            .parameters = {interleave_parameter},
+            .has_classes = true};
 }
 
 }  // namespace raycache::tracer

@@ -25,18 +25,15 @@ private:
 }  // namespace
 
 DecorrelationEntry owen_entry() {
-    return {"owen",
-            "nested uniform scrambling per pixel and dimension (Owen 1995, hash-based); nets in base 2 only",
-            [](const DecorrelationSettings&, const SampleSet& samples,
-               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
-                require_net("owen", sequence, 1);
-                return std::make_unique<Owen>(samples.seed);
-            },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed};
-            },
-            false,
-            true};
+    return {
+        .name = "owen",
+        .description = "nested uniform scrambling per pixel and dimension (Owen 1995, hash-based); nets in base 2 only",
+        .make = [](const Parameters&, const SampleSet& samples,
+                   const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+            require_net("owen", sequence, 1);
+            return std::make_unique<Owen>(samples.seed);
+        },
+        .independent_pixels = true};
 }
 
 }  // namespace raycache::tracer

@@ -23,13 +23,13 @@ private:
 }  // namespace
 
 DecorrelationEntry random_entry() {
-    return {"random",
-            "an independent random number per pixel, sample and dimension; ignores the sequence",
-            [](const DecorrelationSettings&, const SampleSet& samples,
-               const Sequence&) -> std::unique_ptr<Decorrelation> { return std::make_unique<Random>(samples.seed); },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> { return {Parameter::seed}; },
-            false,
-            true};
+    return {.name = "random",
+            .description = "an independent random number per pixel, sample and dimension; ignores the sequence",
+            .make = [](const Parameters&, const SampleSet& samples, const Sequence&) -> std::unique_ptr<Decorrelation> {
+                return std::make_unique<Random>(samples.seed);
+            },
+            .reads_sequence = false,
+            .independent_pixels = true};
 }
 
 }  // namespace raycache::tracer

@@ -32,15 +32,13 @@ private:
 }  // namespace
 
 DecorrelationEntry uniform_jitter_entry() {
-    return {"uniform-jitter", "N regular strata per dimension, moved as a whole per pixel (Ramamoorthi et al. 2012)",
-            [](const DecorrelationSettings&, const SampleSet& samples,
-               const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
+    return {.name = "uniform-jitter",
+            .description = "N regular strata per dimension, moved as a whole per pixel (Ramamoorthi et al. 2012)",
+            .make = [](const Parameters&, const SampleSet& samples,
+                       const Sequence& sequence) -> std::unique_ptr<Decorrelation> {
                 require_net("uniform-jitter", sequence, 1);
                 return std::make_unique<UniformJitter>(samples.seed,
                                                        require_power_of_two("uniform-jitter", samples.spp));
-            },
-            [](const DecorrelationSettings&) -> std::vector<Parameter> {
-                return {Parameter::sequence, Parameter::seed};
             }};
 }
 

@@ -26,7 +26,6 @@ std::optional<JitterWindow> jitter_window(const StrategySettings& strategy, std:
     if (name == "coherent") return JitterWindow{0, 0};
     for (const std::string_view other : uniform_everywhere)
         if (name == other) return JitterWindow{0, whole_circle};
-    const DecorrelationSettings& settings = strategy.parameters;
     SampleSet samples = strategy.samples;
     samples.dimensions = dimensions;
     const auto sequence = make_sequence(strategy.sequence, samples.seed);
@@ -37,9 +36,7 @@ std::optional<JitterWindow> jitter_window(const StrategySettings& strategy, std:
     }
     const bool automatic = name == "scrambling-distance";
     if (name != "micro-jitter" && !automatic) return {};
-    const double mu = automatic     ? std::min(1.0, scrambling_distance(settings, samples.spp))
-                      : settings.mu ? effective_mu(settings, samples.spp)
-                                    : effective_mu(resolve_k_and_s(settings, samples, *sequence), samples.spp);
+    const double mu = *make_decorrelation(name, strategy.parameters, samples, *sequence)->mu();
     const auto width = static_cast<std::uint64_t>(mu * 0x1p32 + 0.5);  // as FixedMu
     return JitterWindow{automatic ? 0 : width / 2, width};
 }
