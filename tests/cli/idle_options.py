@@ -38,6 +38,8 @@ class IdleOptions(ProgramTest):
         self.assertIn("cranley-patterson does not read it (micro-jitter, scrambling-distance do)", text)
         text = self.warns("capture", *SMALL, "--k", "2", "--mu", "0.1", "-o", "t.rct").stderr
         self.assertIn("--k has no effect: --mu is given", text)
+        text = self.warns("capture", *SMALL, "--strategy", "owen", "--param", "mu=0.1", "-o", "t.rct").stderr
+        self.assertIn("--param mu has no effect: owen does not read it (micro-jitter, scrambling-distance do)", text)
 
     def test_in_a_list_one_strategy_that_reads_an_option_is_enough(self):
         compare = ["compare", "--scene", *SMALL, "--trace-samples", "1", *GPU, "--mu", "0.3"]

@@ -98,6 +98,29 @@ class Strategies(ProgramTest):
             output = ["-o", "a.png"] if command[0] == "render" else []
             self.assertIn("'owen@tile'", self.refuses(2, *command, "--strategy", "owen@tile", *output))
 
+    def test_a_parameter_by_its_name_gives_the_trace_of_its_option(self):
+        for strategy, options, named in [("micro-jitter", ["--mu", "0.1"], ["mu=0.1"]),
+                                         ("micro-jitter", ["--k", "1.5", "--s", "3"], ["k=1.5", "s=3"]),
+                                         ("interleaved", ["--interleave", "5"], ["interleave=5"]),
+                                         ("scrambling-distance", ["--cycles-noise-threshold", "off"],
+                                          ["cycles-noise-threshold=off"])]:
+            by_option = self.recorded("--strategy", strategy, *options)
+            trace = self.path("trace.rct").read_bytes()
+            by_name = [word for name in named for word in ("--param", name)]
+            self.assertEqual(self.recorded("--strategy", strategy, *by_name), by_option)
+            self.assertEqual(self.path("trace.rct").read_bytes(), trace)
+        self.assertIn("did you mean 'interleave'?", self.refuses(2, *CAPTURE, "--param", "interleaf=5"))
+        self.assertIn("NAME=VALUE", self.refuses(2, *CAPTURE, "--param", "mu"))
+        self.assertIn("1 to 256", self.refuses(2, *CAPTURE, "--param", "interleave=257"))
+        self.assertIn("mu must be a number of 0 or more, found wide", self.refuses(2, *CAPTURE, "--param", "mu=wide"))
+
+    def test_a_case_rules_over_a_parameter_by_its_name(self):
+        compare = ["compare", "--scene", *SCENE, "--resolution", "16x16", "--trace-samples", "1", "--spp", "64", *GPU,
+                   "--strategy", "micro-jitter", "--param", "k=3", "--json"]
+        for options, expected in [([], ["K=3 "]), (["--k", "1,2"], ["K=1 ", "K=2 "])]:
+            rows = self.succeeds(*compare, *options).json["rows"]
+            self.assertEqual([row["parameters"][:4] for row in rows], expected)
+
     def test_the_command_of_a_trace_makes_the_same_trace_again(self):
         recorded = self.recorded("--strategy", "interleaved", "--interleave", "3", "--seed", "7")
         command = recorded["traces"][0]["command_line"]

@@ -66,7 +66,7 @@ double pairwise_mean_square(const Points& points, double w) {
 }
 
 StrategySettings micro_jitter(const char* sequence, std::uint32_t n, double k) {
-    StrategySettings settings{sequence, "micro-jitter", {}};
+    StrategySettings settings{sequence, "micro-jitter", {}, {}};
     settings.samples.spp = n;
     settings.parameters.set("k", k);
     return settings;
@@ -139,7 +139,7 @@ TEST_CASE("measures: the density of a window as wide as everything, and of equal
     const UnionDensity everywhere = union_density(plane("halton", 10), {0, one});
     CHECK(everywhere.min == 1);
     CHECK(everywhere.mean_square == 1);
-    StrategySettings net{"sobol-owen-4d", "net-micro-jitter", {}};
+    StrategySettings net{"sobol-owen-4d", "net-micro-jitter", {}, {}};
     net.samples.spp = 256;
     const auto window = jitter_window(net, 2, 0);
     REQUIRE(window);
@@ -152,7 +152,7 @@ TEST_CASE("measures: the density of a window as wide as everything, and of equal
 
 TEST_CASE("measures: a strategy's window is where its values lie") {
     for (const char* name : {"micro-jitter", "scrambling-distance", "net-micro-jitter", "uniform-jitter", "coherent"}) {
-        StrategySettings settings{"sobol", name, {}};
+        StrategySettings settings{"sobol", name, {}, {}};
         settings.samples.spp = 64;
         const auto window = jitter_window(settings, 4, 1);
         REQUIRE(window);
@@ -172,7 +172,7 @@ TEST_CASE("measures: a strategy's window is where its values lie") {
         CHECK(inside);
         CHECK(farthest >= window->width * 0.98 - 1);
     }
-    CHECK_FALSE(jitter_window({"sobol", "interleaved", {}}, 4, 1).has_value());
+    CHECK_FALSE(jitter_window({"sobol", "interleaved", {}, {}}, 4, 1).has_value());
 }
 
 TEST_CASE("measures: at the paper's Figure 2 point K is 2.17 and the holes close at 1.955") {

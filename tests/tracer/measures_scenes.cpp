@@ -14,7 +14,7 @@ namespace {
 
 FieldError measure(const char* sequence, const char* decorrelation, std::uint32_t dimensions, std::uint32_t n,
                    double k = 2.5, unsigned s = 2) {
-    StrategySettings settings{sequence, decorrelation, {}};
+    StrategySettings settings{sequence, decorrelation, {}, {}};
     settings.samples.spp = n;
     settings.samples.seed = 1;
     settings.parameters.set("k", k);
@@ -60,7 +60,7 @@ TEST_CASE("measures: every test scene's integral equals a fine quadrature") {
             INFO(scene->name() << " u " << u);
             CHECK(sum / (side * side) == Approx(scene->integral(u, 1 - u)).margin(1.5e-3));
         }
-    StrategySettings settings{"sobol-owen-4d", "coherent", {}};
+    StrategySettings settings{"sobol-owen-4d", "coherent", {}, {}};
     settings.samples.spp = 1U << 18;
     const SamplingStrategy points(settings, 4);
     std::vector<double> sums(edges_4d().size());
@@ -103,7 +103,7 @@ TEST_CASE("measures: micro-jitter's mean over pixels is the integral over its un
     // that rectangle, wrapped.
     constexpr std::uint32_t n = 16, pixels = 200'000;
     constexpr double a = 0.62, b = 0.68;
-    StrategySettings settings{"sobol", "micro-jitter", {}};
+    StrategySettings settings{"sobol", "micro-jitter", {}, {}};
     settings.samples.spp = n;
     settings.parameters.set("k", 1);
     const double mu = *make_decorrelation("micro-jitter", settings.parameters, settings.samples)->mu();
@@ -158,7 +158,7 @@ TEST_CASE("measures: clamping and reflecting at the border, and a new xi for eve
     CHECK(mse(JitterVariant::reflect) > 1.2 * wrap);
     CHECK(mse(JitterVariant::per_sample) > 2 * wrap);
     // The variant "wrap" is the strategy itself.
-    StrategySettings settings{"sobol", "micro-jitter", {}};
+    StrategySettings settings{"sobol", "micro-jitter", {}, {}};
     settings.samples.spp = 256;
     settings.samples.seed = 1;
     settings.parameters.set("mu", 0.125);

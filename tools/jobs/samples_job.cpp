@@ -3,10 +3,7 @@
 namespace raycache::tools {
 
 tracer::StrategySettings SamplesJob::settings() const {
-    SamplingSettings own = sampling;
-    if (!strategy.k.empty()) own.k = strategy.k;
-    if (!strategy.mu.empty()) own.mu = strategy.mu;
-    return own.strategy(strategy.sequence, to_string(strategy.strategy), strategy.spp);
+    return of_case(sampling, strategy).strategy(strategy.sequence, to_string(strategy.strategy), strategy.spp);
 }
 
 SamplesResult run(const SamplesJob& job, Observer& observer) {

@@ -113,11 +113,20 @@ tracer::StrategySettings SamplingSettings::strategy(const std::string& sequence,
     return settings;
 }
 
+SamplingSettings of_case(SamplingSettings sampling, const CaseSettings& one) {
+    const auto replace = [&](const std::string& name, const std::string& value, std::string& member) {
+        if (value.empty()) return;
+        member = value;
+        std::erase_if(sampling.parameters, [&](const std::string& given) { return given.starts_with(name + '='); });
+    };
+    replace("k", one.k, sampling.k);
+    replace("mu", one.mu, sampling.mu);
+    return sampling;
+}
+
 tracer::CaptureSettings capture_settings(const SceneSettings& scene, const SamplingSettings& common,
                                          const CaseSettings& one) {
-    SamplingSettings sampling = common;
-    if (!one.k.empty()) sampling.k = one.k;
-    if (!one.mu.empty()) sampling.mu = one.mu;
+    const SamplingSettings sampling = of_case(common, one);
     tracer::CaptureSettings settings;
     tracer::check_strategy_name(one.strategy);
     const std::string& decorrelation = one.strategy.decorrelation;

@@ -49,6 +49,9 @@ struct CaseSettings {
     std::string k, mu;       ///< instead of SamplingSettings'; empty: those
 };
 
+/// What all cases have in common, with what this one has instead.
+SamplingSettings of_case(SamplingSettings, const CaseSettings&);
+
 /// What the tracer is asked for. Throws UsageError for a name that is none and values out of range.
 tracer::CaptureSettings capture_settings(const SceneSettings&, const SamplingSettings&, const CaseSettings&);
 std::vector<tracer::CaptureSettings> capture_settings(const SceneSettings&, const SamplingSettings&,

@@ -22,7 +22,7 @@ struct Options {
     std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter"};
     std::vector<std::string> sequences{"sobol"};
     std::vector<std::uint64_t> spp{64};
-    std::vector<std::string> ks{"2.5"};
+    std::vector<std::string> ks{""};  ///< empty: that of `sampling`
     SamplingOptions sampling;
     ReportOptions report;
     ThreadOptions threads;
@@ -94,7 +94,8 @@ void add_compare(Program& program) {
                      "K of micro-jitter's mu = min(1, K * N^(-1/s)), or 'discrepancy': (N * D*_N)^(1/s); several, "
                      "separated by commas, make a row each")
         ->range(0.0, std::numeric_limits<double>::max())
-        ->number_or("discrepancy");
+        ->number_or("discrepancy")
+        ->default_text("2.5");
     command->group("");
     command->examples(
         {"raycache compare courtyard --strategy coherent,cranley-patterson,micro-jitter --spp 16,256,1024 "

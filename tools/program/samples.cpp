@@ -39,6 +39,7 @@ SampleUnion make(SamplesJob job, const std::string& strategy, std::optional<doub
         job.sampling.k = fmt::format("{}", *k);
         job.sampling.s = "2";
         job.sampling.mu.clear();
+        job.sampling.parameters.clear();
     }
     Observer silent;  // of these panels nobody asked
     return run(job, silent).samples;
