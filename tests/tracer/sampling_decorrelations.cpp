@@ -228,7 +228,7 @@ TEST_CASE("sampling: parameters say K, s and the effective mu as the user gave t
 TEST_CASE("sampling: bad settings are refused in one line, whatever the decorrelation") {
     check_refused(with_formula(2.5, 0), "must be 1 to 4294967296, found 0");
     check_refused(with_formula(2.5, (std::uint64_t{1} << 32) + 1), "found 4294967297");
-    check_refused(with_formula(-1, 16), "K must be a number of 0 or more, found -1");
+    check_refused(with_formula(-1, 16), "K must be a number of 0 or more, or 'discrepancy', found -1");
     check_refused(with_formula(not_a_number, 16), "found nan");
     check_refused(with_formula(infinity, 16), "found inf");
     check_refused(with_formula(2.5, 16, 0), "found 0");
