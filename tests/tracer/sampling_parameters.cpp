@@ -44,7 +44,7 @@ const std::vector<std::pair<std::string, std::string>> changes{
 
 }  // namespace
 
-TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other") {
+TEST_CASE("sampling: a decorrelation reads the parameters that its entry names, and no other", "[slow]") {
     REQUIRE(changes.size() == parameter_names().size());
     for (const DecorrelationEntry& entry : decorrelations())
         for (const bool with_mu : {false, true}) {
