@@ -1,6 +1,9 @@
 // From an InstructionSet to the function that Highway compiled for it. Included by .cpp files only.
 #pragma once
 
+#include "cachesim/vector_targets.hpp"
+
+// After the choice of targets.
 #include <hwy/highway.h>
 
 #include <cstddef>

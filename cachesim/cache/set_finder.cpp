@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cachesim/vector_targets.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cachesim/cache/set_finder.cpp"
 #include <hwy/foreach_target.h>

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "cachesim/vector_targets.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cachesim/frontend/coalesce_vectors.cpp"
 #include <hwy/foreach_target.h>

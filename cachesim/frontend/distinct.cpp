@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "cachesim/vector_targets.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cachesim/frontend/distinct.cpp"
 #include <hwy/foreach_target.h>

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "cachesim/vector_targets.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cachesim/cache/policies/lru_buckets.cpp"
 #include <hwy/foreach_target.h>

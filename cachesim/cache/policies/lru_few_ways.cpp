@@ -4,6 +4,8 @@
 #include <bit>
 #include <vector>
 
+#include "cachesim/vector_targets.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cachesim/cache/policies/lru_few_ways.cpp"
 #include <hwy/foreach_target.h>
