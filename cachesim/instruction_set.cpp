@@ -35,7 +35,9 @@ bool is_available(const Entry& entry) {
 #if HWY_ARCH_X86
     if (entry.instructions == InstructionSet::avx512 && !__builtin_cpu_supports("avx512cd")) return false;
 #endif
-    return (hwy::SupportedTargets() & HWY_TARGETS & entry.target) != 0;
+    // Asks the processor, which takes long in a virtual machine.
+    static const std::int64_t supported = hwy::SupportedTargets();
+    return (supported & HWY_TARGETS & entry.target) != 0;
 }
 
 InstructionSet choose() {

@@ -67,7 +67,7 @@ HWY_INLINE std::size_t append_straddling(const Lanes& lanes, const Shape& shape,
     for (const unsigned half : {0u, lanes_of_vector / 2}) {
         const Vector twice = hn::Add(hn::ShiftRight<1>(places()), all(half));  // 0, 0, 1, 1, …
         const Vector s = hn::OddEven(permuted(high, twice), permuted(low, twice));
-        const Mask some = hn::Ne(s, hn::Zero(words_tag));
+        const Mask some = in_common(s, s);
         store(keys + end, compressed(hn::OddEven(permuted(next, twice), permuted(lanes.keys, twice)), some));
         store(sectors + end, compressed(s, some));
         end += count_of(some);
@@ -102,7 +102,7 @@ HWY_INLINE Merged merge(const std::uint32_t* keys, const std::uint32_t* sectors,
     for (unsigned s = 0; s < sectors_per_line; ++s) {
         const Vector bit = all(1u << s);
         const Vector have = all(bits_of(hn::TestBit(wanted, bit)));
-        merged = hn::IfThenElse(hn::Ne(hn::And(same, have), hn::Zero(words_tag)), hn::Or(merged, bit), merged);
+        merged = hn::IfThenElse(in_common(same, have), hn::Or(merged, bit), merged);
     }
     const auto distinct = static_cast<unsigned>(std::popcount(firsts));
     const Vector order = hn::Sub(all(distinct - 1), places());

@@ -55,7 +55,7 @@ private:
     }
 
     /// The missing sectors and what Fill adds.
-    std::uint32_t fetch(Set& set, std::uint32_t line, std::uint32_t wanted) const {
+    HWY_INLINE std::uint32_t fetch(Set& set, std::uint32_t line, std::uint32_t wanted) const {
         const std::uint32_t missing = access(set, line, wanted);
         if (!fill_.widens() || !missing) return missing;
         return missing | access(set, line, fill_.pieces(missing));
