@@ -47,7 +47,7 @@ std::span<const Key<Timing>> timing_keys() {
          "collectors of a scheduler that loads and other instructions share, as in GPGPU-Sim; 0: none, `load_queue` "
          "counts. With them `l1_latency` is at least 4"},
         {"answers_per_cycle", whole(&T::answers_per_cycle, 0), initial, "",
-         "1 (or more, which means the same): an SM answers one waiting look-up a cycle; 0: any number"},
+         "look-ups whose sector came from below that an SM answers in a cycle; 0: any number"},
         {"l1_port", choice<&T::l1_port, l1_ports>(), initial, "", "how data leave L1; `banks`: GPGPU-Sim's rule"},
         {"l1_banks", power_of_two(&T::l1_banks, 1, 32), initial, "", "`banks`: a sector each and cycle"},
         {"tags_per_cycle", whole(&T::tags_per_cycle, 1, 64), initial, "lines", "`tags`: a cycle"},
