@@ -19,7 +19,7 @@ struct OnePort {
           rules(gpu, pieces, ids, {}),
           visits(8),
           data(8),
-          port(rules, ids, 0, 0, visits.data(), data.data(), lacks) {}
+          port(rules, ids, 0, 0, data.data(), lacks) {}
 
     void push(std::uint32_t flight, const std::vector<std::uint32_t>& elements) {
         VisitAtPort& visit = visits[flight];
@@ -28,7 +28,7 @@ struct OnePort {
         visit.visit.begin(*visit.shape, static_cast<std::uint32_t>((std::uint64_t{1} << elements.size()) - 1),
                           elements.data(), 32);
         data[flight] = {0, 0, flight, false};
-        port.push({flight, 0, flight});
+        port.push({&visit, flight, 0, flight});
     }
     /// When each of the loads has passed.
     std::vector<Cycle> pass(Cycle now, Cycle end) {

@@ -5,13 +5,12 @@
 
 namespace raycache::cachesim {
 
-Port::Port(const TimedRules& rules, LineIds& ids, std::uint16_t sm, std::uint8_t number, VisitAtPort* visits,
-           LoadData* data, std::vector<MissRequest>& lacks)
+Port::Port(const TimedRules& rules, LineIds& ids, std::uint16_t sm, std::uint8_t number, LoadData* data,
+           std::vector<MissRequest>& lacks)
     : rules_(rules),
       ids_(ids),
       sm_(sm),
       number_(number),
-      visits_(visits),
       data_(data),
       lacks_(lacks),
       cache_(rules.gpu.l1(), sm * rules.gpu.l1_per_sm + number, rules.timing.l1_mshrs),
@@ -30,10 +29,9 @@ std::optional<Port::Load> Port::serve(Cycle now, Cycle end) {
 template <class Clock>
 std::optional<Port::Load> Port::serve_by(Clock& clock, Cycle now, Cycle end) {
     const Load load = queue_.front();
-    const bool passed = !visits_[load.flight].shape->apart || rules_.path == PortPath::rule
-                            ? follow<AnyWalk>(clock, now, end)
-                        : can_repeat(now, end) ? repeat(now, end)
-                                               : follow<ApartWalk>(clock, now, end);
+    const bool passed = !load.visit->shape->apart || rules_.path == PortPath::rule ? follow<AnyWalk>(clock, now, end)
+                        : can_repeat(now, end)                                     ? repeat(now, end)
+                                                                                   : follow<ApartWalk>(clock, now, end);
     if (!passed) return std::nullopt;
     queue_.pop();
     place_ = {};
@@ -46,7 +44,7 @@ std::optional<Port::Load> Port::serve_by(Clock& clock, Cycle now, Cycle end) {
 template <class Walk, class Clock>
 bool Port::follow(Clock& kept, Cycle now, Cycle end) {
     const Load load = queue_.front();
-    VisitAtPort& at = visits_[load.flight];
+    VisitAtPort& at = *load.visit;
     SectorCache& lines = cache_.lines();
     SectorCache::Line* const line = lines.lines();
     const bool lru = lines.is_lru(), perfect = rules_.ideal.perfect_l1, unlimited = rules_.ideal.infinite_bandwidth;
@@ -142,7 +140,7 @@ bool Port::follow(Clock& kept, Cycle now, Cycle end) {
 /// its own.
 bool Port::can_repeat(Cycle now, Cycle end) {
     const Load& load = queue_.front();
-    const VisitAtPort& at = visits_[load.flight];
+    const VisitAtPort& at = *load.visit;
     if (load.number == 0 || at.there == 0 || place_.element != 0) return false;
     const Cycle last = now + at.cycle[at.visit.count() - 1];
     if (rules_.gpu.l1().allocate == Allocate::on_fill) {  // what arrives evicts lines
@@ -157,7 +155,7 @@ bool Port::can_repeat(Cycle now, Cycle end) {
 /// evicted. Loads of LoadShape::steady take the port equally long. The rest is looked up.
 bool Port::repeat(Cycle now, Cycle end) {
     const Load load = queue_.front();
-    VisitAtPort& at = visits_[load.flight];
+    VisitAtPort& at = *load.visit;
     LoadData& data = data_[load.data];
     const LoadShape& shape = *at.shape;
     SectorCache& lines = cache_.lines();
@@ -244,7 +242,7 @@ bool Port::miss(const Load& load, std::uint32_t sector, std::uint32_t id, std::u
         return true;
     }
     if (registers.full()) return false;
-    const std::uint64_t line = ids_.line(id, visits_[load.flight].region);
+    const std::uint64_t line = ids_.line(id, load.visit->region);
     const bool line_there = entry != none;
     const std::uint64_t set = line_there ? 0 : rules_.maps[0](line);
     const std::uint32_t sent = cache_.send_for(id, sector, set, entry, time);

@@ -25,11 +25,11 @@ struct VisitAtPort {
     const LoadShape* shape = nullptr;
     std::uint32_t region = 0;
     std::uint32_t passed = 0;  ///< loads
-    Visit visit;
     /// What the first load found, and when (LoadShape::steady): bit i: all sectors of element i were there, and its
     /// line was used after `found_since`; how many lines these are; in which cycle of the load each was asked.
     std::uint32_t there = 0, found_since = 0, lines = 0;
     std::array<std::uint8_t, traces::warp_lanes> cycle{};
+    Visit visit;
     /// By element of the visit and line of the element, modulo 2: where the L1 held it when it was last looked up.
     std::array<std::uint32_t, 2 * traces::warp_lanes> entries{};
 };
@@ -46,11 +46,12 @@ struct LoadData {
 
 class Port {
 public:
-    /// A load on its way through the port: indices into the visits and data of the SM.
+    /// A load on its way through the port.
     struct Load {
+        VisitAtPort* visit = nullptr;
         std::uint32_t flight = 0;
         std::uint32_t number = 0;  ///< of the visit
-        std::uint32_t data = 0;
+        std::uint32_t data = 0;    ///< of the SM
     };
     struct Counts {
         LevelAnswers answers;
@@ -59,7 +60,7 @@ public:
 
     /// L1 number `number` of the SM, empty. Misses go to `lacks`, in order of time. All references and what the
     /// pointers lead to must outlive this object.
-    Port(const TimedRules&, LineIds&, std::uint16_t sm, std::uint8_t number, VisitAtPort* visits, LoadData* data,
+    Port(const TimedRules&, LineIds&, std::uint16_t sm, std::uint8_t number, LoadData* data,
          std::vector<MissRequest>& lacks);
 
     bool empty() const { return queue_.empty(); }
@@ -109,7 +110,6 @@ private:
     LineIds& ids_;
     std::uint16_t sm_;
     std::uint8_t number_;
-    VisitAtPort* visits_;
     LoadData* data_;
     std::vector<MissRequest>& lacks_;
     TimedCache cache_;

@@ -9,7 +9,6 @@ TimedSm::TimedSm(const TimedRules& rules, LineIds& ids, std::uint16_t number)
     : rules_(rules),
       warps_(std::size_t{rules.cta_slots} * rules.gpu.warps_per_cta),
       flights_(warps_.size() * rules.timing.accesses_in_flight),
-      visits_(flights_.size()),
       per_warp_(rules.timing.accesses_in_flight),
       data_per_flight_(rules.collectors() ? rules.most_loads() : 1),
       data_(flights_.size() * data_per_flight_),
@@ -26,8 +25,7 @@ TimedSm::TimedSm(const TimedRules& rules, LineIds& ids, std::uint16_t number)
     }
     if (rules.three_levels()) private_.emplace(rules, number);
     for (std::uint32_t i = 0; i < rules.gpu.l1_per_sm; ++i)
-        ports_.emplace_back(rules, ids, number, static_cast<std::uint8_t>(i), visits_.data(), data_.data(),
-                            private_ ? asked_ : misses);
+        ports_.emplace_back(rules, ids, number, static_cast<std::uint8_t>(i), data_.data(), private_ ? asked_ : misses);
     for (std::uint32_t i = 0; i < data_.size(); ++i) data_[i].flight = i / data_per_flight_;
     if (rules.collectors()) flow_.emplace(rules.timing, flights_.size());
 }
@@ -82,7 +80,7 @@ bool TimedSm::begin_visit(std::uint32_t number) {
     const auto access = warps_[slot_of(number)].records.next(rules_);
     if (!access) return false;
     Flight& flight = flights_[number];
-    VisitAtPort& visit = visits_[number];
+    VisitAtPort& visit = flight.visit;
     visit.region = access->region;
     visit.shape = &rules_.shapes[access->region];
     visit.visit.begin(*visit.shape, access->mask, access->elements, rules_.gpu.simd_width);
@@ -161,20 +159,20 @@ void TimedSm::issue(unsigned number, Cycle time) {
     scheduler.issue_load(bit, flight.issued == flight.loads, time);
     note(number);
     ++counts_.loads;
-    port_of(chosen).push({chosen, load, chosen});
+    port_of(chosen).push({&flight.visit, chosen, load, chosen});
 }
 
 /// The load at the front of a port goes on, as far as `end`.
 void TimedSm::serve(Port& port, Cycle now, Cycle end) {
     const auto load = port.serve(now, end);
     if (!load) return;
-    const Flight& flight = flights_[load->flight];
+    Flight& flight = flights_[load->flight];
     if (!flow_) {
         schedulers_[flight.scheduler].load_passed();
         note(flight.scheduler);
     }
     LoadData& data = data_[load->data];
-    data.asked = ++visits_[load->flight].passed == flight.loads || flow_;
+    data.asked = ++flight.visit.passed == flight.loads || flow_;
     if (data.known()) data_known(load->data);
 }
 

@@ -74,12 +74,13 @@ private:
     };
     /// A visit of a warp that is under way. A warp has Timing::accesses_in_flight of them at once; each takes the
     /// warp's next access when it is done.
-    struct Flight {
+    struct alignas(64) Flight {
         std::uint8_t scheduler = 0, bit = 0;  ///< its place there
         bool computing = false;
         std::uint32_t loads = 0, instructions = 0;  ///< of the visit
         std::uint32_t issued = 0;                   ///< loads
         Cycle first_issue = 0;
+        VisitAtPort visit;
     };
 
     std::uint32_t slot_of(std::uint32_t flight) const { return per_warp_ == 1 ? flight : flight / per_warp_; }
@@ -116,7 +117,6 @@ private:
     const TimedRules& rules_;
     std::vector<Warp> warps_;                ///< by slot
     std::vector<Flight> flights_;            ///< by slot * per_warp_ + number
-    std::vector<VisitAtPort> visits_;        ///< by flight
     std::uint32_t per_warp_;                 ///< flights of a warp
     std::uint32_t data_per_flight_;          ///< 1, or one for each load of a visit
     std::vector<LoadData> data_;             ///< by flight * data_per_flight_ + load

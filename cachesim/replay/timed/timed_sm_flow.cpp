@@ -155,7 +155,7 @@ bool TimedSm::feed_ports(Cycle now, Cycle end) {
         }
         if (!oldest) continue;
         const OperandCollectors::Instruction at = collectors.take(from, OperandCollectors::load);
-        port.push({at.flight, at.number, at.flight * data_per_flight_ + at.number});
+        port.push({&flights_[at.flight].visit, at.flight, at.number, at.flight * data_per_flight_ + at.number});
         port.hold(now + 1);
         moved = true;
     }

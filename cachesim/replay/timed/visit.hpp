@@ -135,10 +135,10 @@ private:
         ends_ |= 1u << (count_ - 1);
     }
 
-    std::array<std::uint32_t, traces::warp_lanes> elements_{};
-    std::array<std::uint8_t, traces::warp_lanes> empty_before_{};  ///< by the first element of a group
     unsigned count_ = 0, empty_behind_ = 0;
     std::uint32_t ends_ = 0;
+    std::array<std::uint32_t, traces::warp_lanes> elements_{};
+    std::array<std::uint8_t, traces::warp_lanes> empty_before_{};  ///< by the first element of a group
 };
 
 }  // namespace raycache::cachesim
