@@ -18,37 +18,9 @@ import jinja2
 sys.dont_write_bytecode = True
 import report_charts as charts  # noqa: E402
 from files import read_text, whole_file  # noqa: E402
-from report_numbers import (BadInput, Comparison, change, distinct, fixed, interval, is_certain, percent,  # noqa: E402
-                            present)
+from report_numbers import BadInput, Comparison, cell, change, distinct, interval, is_certain, present  # noqa: E402
 
 SCHEMA = 1
-COLUMNS = [  # title, cell, what it says; the title's '\n' breaks the line. Those that no row has are left out
-    ("rays", lambda r: f"{r['totals']['rays']:,}".replace(",", "\u202f"),
-     "camera, shadow and bounce rays traced, over all traced sample indices"),
-    ("steps\nper ray", lambda r: fixed(r["steps_per_ray"], 1),
-     "visits to BVH nodes and tests of triangles per ray: the work, whatever the memory does"),
-    ("active\nlanes", lambda r: fixed(r["active_lanes"], 2),
-     "of the 32 lanes of a warp, how many take part in an average access; 32 is best"),
-    ("sectors\nper access", lambda r: fixed(r["sectors_per_access"], 2),
-     "different 32-byte pieces of memory that one warp access touches; lower is better"),
-    ("L1\nhits", lambda r: percent(r["l1_hit_rate"]),
-     "share of the requests of all loads that the first-level cache of the multiprocessor answers, as Nsight Compute counts "
-     "(l1tex__t_sector_hit_rate)"),
-    ("L2\nhits", lambda r: percent(r["l2_hit_rate"]),
-     "share of the rest found in the second-level cache, on a GPU that of all multiprocessors"),
-    ("L3\nhits", lambda r: percent(r.get("l3_hit_rate")), "share of the rest found in the third-level cache, which all share"),
-    ("L2\u2192L1\nB/ray", lambda r: interval(r["l2_bytes_per_ray"]), "bytes per ray that L1 did not have and asked L2 for"),
-    ("L3\u2192L2\nB/ray", lambda r: interval(r.get("l3_bytes_per_ray")), "bytes per ray that L2 did not have and asked L3 for"),
-    ("DRAM\nB/ray", lambda r: interval(r["dram_bytes_per_ray"]), "bytes per ray that no cache had and that came from memory"),
-    ("first\ntouches", lambda r: percent(r["dram_compulsory_share"]),
-     "share of the DRAM reads that no cache could have saved: sectors read for the first time. Each sample index begins with "
-     "cold caches, so at about 100 % DRAM bytes count what is touched, not how well caches are used"),
-    ("L2\u2192L1\nratio", lambda r: interval(r["l2_bytes_ratio"]),
-     "L2\u2192L1 bytes per ray over those of the baseline strategy, compared sample index by sample index; below 1 is better"),
-    ("DRAM\nratio", lambda r: interval(r["dram_bytes_ratio"]), "the same for DRAM bytes per ray"),
-    ("predicted\nspeed", lambda r: interval(r.get("speed_up"), 2),
-     "predicted time of the baseline over that of the row; above 1 is faster. A model's, not a measurement"),
-]
 
 
 def quality_command(row, settings):
@@ -123,9 +95,8 @@ def table(comparison, columns, setting):
     for row in sorted(comparison.of(setting), key=lambda r: r["spp"]):
         compared = row["strategy"] != comparison.baseline
         rows.append({"rule": previous not in (None, row["spp"]),
-                     "cells": [cell(row) for _, cell in lead] +
-                              [cell(row) if compared or not title.endswith(("ratio", "speed")) else "baseline"
-                               for title, cell, _ in columns]})
+                     "cells": [text(row) for _, text in lead] +
+                              [cell(figure, row) if compared or not figure["compared"] else "baseline" for figure in columns]})
         previous = row["spp"]
     return {"title": comparison.titles[setting], "lead": [title for title, _ in lead], "rows": rows}
 
@@ -137,7 +108,7 @@ def chart_panels(comparison, key, axis_title, line=None):
 
 def contents(comparison, quality, picture, command):
     """What the template shows, by the names it uses."""
-    columns = [c for c in COLUMNS if any(c[1](row) != "\u2013" for row in comparison.rows)]
+    columns = [f for f in comparison.figures if f["page"] and any(cell(f, row) != "\u2013" for row in comparison.rows)]
     compares = bool(comparison.baseline) and not comparison.grouped
     found = {
         "scenes": ", ".join(distinct(r["scene"] for r in comparison.rows)),
@@ -145,7 +116,7 @@ def contents(comparison, quality, picture, command):
         "samples": len(comparison.rows[0]["samples"]), "timed": comparison.timed, "grouped": comparison.grouped,
         "compares": compares, "baseline": comparison.baseline, "notes": comparison.notes, "command": command,
         "best": best_of(comparison, quality) if compares else None, "verdicts": verdicts(comparison) if compares else [],
-        "columns": [{"lines": title.split("\n"), "words": words} for title, _, words in columns],
+        "columns": [{"lines": figure["title"].split(" ", 1), "words": figure["definition"]} for figure in columns],
         "tables": [table(comparison, columns, s) for s in comparison.settings],
         "parameters": distinct((r["strategy"], r["spp"], r["parameters"]) for r in comparison.rows if r["parameters"]),
         "picture": base64.b64encode(picture).decode() if picture else None}

@@ -1,15 +1,6 @@
 """What the page of report.py shows of the JSON of `raycache compare`: rows, labels, and numbers as text."""
 import re
 
-FACTORS = [  # key in the JSON, name, what it says
-    ("work", "work", "BVH nodes and triangles visited per ray"),
-    ("simt_efficiency", "SIMT efficiency", "warp accesses per visit: fewer if more lanes of a warp work at once"),
-    ("coalescing", "coalescing", "32-byte sectors per warp access: fewer if the lanes read the same or neighbouring places"),
-    ("l1_locality", "L1 locality", "share of these sectors that L1 does not have"),
-    ("l2_locality", "L2 locality", "share of those that L2 does not have either"),
-    ("l3_locality", "L3 locality", "share of those that L3 does not have either"),
-]
-
 
 class BadInput(Exception):
     pass
@@ -32,8 +23,8 @@ def fixed(estimate, digits):
     return f"{estimate['mean']:.{digits}f}" if present(estimate) else "\u2013"
 
 
-def percent(estimate):
-    return f"{100 * estimate['mean']:.1f} %" if present(estimate) else "\u2013"
+def percent(estimate, digits):
+    return f"{100 * estimate['mean']:.{digits}f} %" if present(estimate) else "\u2013"
 
 
 def interval(estimate, digits=None):
@@ -44,6 +35,18 @@ def interval(estimate, digits=None):
     if digits is None:
         digits = 0 if abs(mean) >= 1000 else 1 if abs(mean) >= 100 else 2 if abs(mean) >= 10 else 3
     return f"{mean:.{digits}f}" + ("" if half is None else f" \u00b1{half:.{digits}f}")
+
+
+def cell(figure, row):
+    """What a figure of the report's `figures` says of a row, the way the program wants it shown."""
+    value = row
+    for key in figure["path"]:
+        value = value.get(key) if value else None
+    if isinstance(value, int):
+        return f"{value:,}".replace(",", "\u202f")
+    if figure["unit"] == "share":
+        return percent(value, figure["digits"])
+    return interval(value, figure["digits"]) if figure["interval"] else fixed(value, figure["digits"])
 
 
 def change(ratio):
@@ -73,8 +76,10 @@ class Comparison:
         self.command = report.get("settings") or {}
         self.grouped = report.get("by", "none") != "none"
         self.timed = any("cycles" in row for row in self.rows)
-        self.has_l3 = any("l3_hit_rate" in row for row in self.rows)
-        self.factors = [factor for factor in FACTORS if self.has_l3 or factor[0] != "l3_locality"]
+        if "figures" not in report:
+            raise BadInput("no figures: made by an older version of raycache; run it again")
+        self.figures = report["figures"]
+        self.factors = [(f["key"], f["title"], f["definition"]) for f in self.figures if f["path"][-2:-1] == ["factors"]]
         fields = [f for f in ("scene", "sequence", "thread_map") if len({r[f] for r in self.rows}) > 1]
         seen = [(self.setting(r), r["strategy"], r["spp"], r["group"]) for r in self.rows]
         self.ambiguous = {entry[1] for entry in seen if seen.count(entry) > 1}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,21 +11,28 @@
 
 namespace raycache::cachesim {
 
-/// Counts of one group of accesses. Every hit rate and every factor of the explanation is a ratio of these.
+/// Most levels of caches that a GPU has.
+inline constexpr std::size_t most_levels = 3;
+
+/// What the caches of one level are asked for.
+struct LevelCounts {
+    /// Sectors. Of L1: the distinct ones of each warp access. Of a level below: those missing in the level above, and
+    /// those fetched beside them where that level fills more than a sector.
+    std::uint64_t sectors = 0;
+    std::uint64_t hits = 0;  ///< of those, found (a sector on its way counts as found)
+
+    bool operator==(const LevelCounts&) const = default;
+};
+
+/// Counts of one group of accesses. Every figure of a report is a quotient of these (cachesim/analysis/counts.hpp).
 struct Counters {
     std::uint64_t rays = 0;           ///< ray starts, one per lane (0 in groups split by object kind)
     std::uint64_t steps = 0;          ///< lane accesses to nodes and triangles
     std::uint64_t lane_accesses = 0;  ///< lane accesses to anything
     std::uint64_t warp_accesses = 0;  ///< access records; of a narrower machine: vectors
     std::uint64_t loads = 0;          ///< load instructions that the warp accesses are: LoadCounter
-    std::uint64_t l1_requests = 0;    ///< sectors that these ask the tag stage for: what Nsight Compute counts
-    std::uint64_t sectors = 0;        ///< distinct sectors of each warp access: those looked up in L1
-    std::uint64_t l1_hits = 0;        ///< of those, found (a sector on its way counts as found)
-    /// Sectors asked of L2: those missing in L1, and those fetched beside them where the L1 fills more than a sector.
-    std::uint64_t l2_sectors = 0;
-    std::uint64_t l2_hits = 0;
-    std::uint64_t l3_sectors = 0;  ///< sectors asked of L3, likewise; 0 where there is none
-    std::uint64_t l3_hits = 0;
+    std::uint64_t requests = 0;       ///< sectors that these ask L1's tag stage for: what Nsight Compute counts
+    std::array<LevelCounts, most_levels> levels{};  ///< from L1 down; nothing where there is no such level
     /// Sectors read from DRAM, those fetched beside the missing ones included. Of a wavefront also those written to it,
     /// and those that sorts read and write.
     std::uint64_t dram_sectors = 0;
@@ -37,7 +45,12 @@ struct Counters {
     std::uint64_t dram_read_sectors() const { return dram_sectors - written_sectors - sort_sectors; }
 
     /// Requests of single loads that L1 answers: only the first request for a sector in a warp access can miss.
-    std::uint64_t l1_request_hits() const { return l1_requests - (sectors - l1_hits); }
+    std::uint64_t request_hits() const { return requests - (levels[0].sectors - levels[0].hits); }
+
+    /// Sectors that level `level`, from 0, of `count` levels fetches from what is below it.
+    std::uint64_t fetched(std::size_t level, std::size_t count) const {
+        return level + 1 < count ? levels[level + 1].sectors : dram_sectors;
+    }
 
     Counters& operator+=(const Counters&);
     bool operator==(const Counters&) const = default;

@@ -26,22 +26,15 @@ Tally& Tally::operator+=(const Tally& other) {
 
 Counters Tally::counters(const Sums& sums, traces::ObjectKind kind, std::size_t region, std::size_t levels,
                          const LoadCounter& loads) {
-    struct Fields {
-        std::uint64_t Counters::*asked, Counters::*found;
-    };
-    static constexpr Fields fields[most_levels] = {{&Counters::sectors, &Counters::l1_hits},
-                                                   {&Counters::l2_sectors, &Counters::l2_hits},
-                                                   {&Counters::l3_sectors, &Counters::l3_hits}};
     Counters c;
     c.lane_accesses = sums.lane_accesses;
     c.warp_accesses = sums.warp_accesses;
     c.loads = sums.warp_accesses * loads.loads(region);
-    c.l1_requests = loads.requests_follow(region) ? loads.requests(region, sums.sectors) : sums.requests;
+    c.requests = loads.requests_follow(region) ? loads.requests(region, sums.sectors) : sums.requests;
     if (traces::role_of(kind).is_step) c.steps = sums.lane_accesses;
     std::uint64_t asked = sums.sectors;
     for (std::size_t level = 0; level < levels; ++level) {
-        c.*fields[level].asked = asked;
-        c.*fields[level].found = asked - (sums.fetched[level] - sums.unasked[level]);
+        c.levels[level] = {asked, asked - (sums.fetched[level] - sums.unasked[level])};
         asked = sums.fetched[level];
     }
     c.dram_sectors = asked;

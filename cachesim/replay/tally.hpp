@@ -72,7 +72,6 @@ public:
                                  const LoadCounter&) const;
 
 private:
-    static constexpr std::size_t most_levels = 3;
     /// Counters, as far as they do not follow from others.
     struct Sums {
         std::uint64_t rays = 0, lane_accesses = 0, warp_accesses = 0, requests = 0, sectors = 0, first = 0;

@@ -38,7 +38,7 @@ struct Explanation {
 
     /// Of `other` over `base`; none where a quotient has no value.
     std::optional<Factors> factors() const;
-    std::size_t levels() const { return base.findings.levels.size(); }  ///< of the GPU's caches
+    CacheUnits caches() const { return {base.findings.levels.size(), sector_bytes}; }
 };
 
 /// Tables of at most `width` columns where they can be so narrow.
@@ -49,9 +49,8 @@ std::string to_json(const Explanation&);
 /// cause named, of a ratio whose interval holds 1. That about time: sentence(speed_ups).
 std::string sentence(const Explanation&);
 
-/// DRAM bytes per ray, or L2-to-L1 bytes, of `other` over those of `base`, paired by sample index.
-Estimate dram_bytes_ratio(const Explanation&);
-Estimate l2_bytes_ratio(const Explanation&);
+/// What a figure that compares, such as "dram_bytes_ratio", says of `other` against `base`, paired by sample index.
+Estimate ratio(const Explanation&, TrafficKey);
 
 /// What there is to say of `other` against `base`, the predicted time included.
 Difference difference_of(const Explanation&);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/json_key.hpp"
@@ -16,19 +15,18 @@ Json counts(const MissCounts& c) {
             {"capacity", c.capacity}, {"conflict", c.conflict}, {"lucky_hits", c.lucky_hits}};
 }
 
-/// The members of Counters that are no quotient of others.
-Json counters(const Counters& c, std::size_t levels) {
-    Json json{{"rays", c.rays},
-              {"steps", c.steps},
-              {"warp_accesses", c.warp_accesses},
-              {"l1_requests", c.l1_requests},
-              {"l1_hits", c.l1_request_hits()},
-              {"sectors", c.sectors},
-              {"l1_visit_hits", c.l1_hits},
-              {"l2_sectors", c.l2_sectors},
-              {"dram_sectors", c.dram_sectors},
-              {"dram_first_sectors", c.dram_first_sectors}};
-    if (levels == 3) json["l3_sectors"] = c.l3_sectors;
+/// Counts that are no quotient of others.
+Json counters(const Counters& c, const CacheUnits& caches) {
+    constexpr TrafficKey keys[] = {
+        "total_rays", "steps",         "warp_accesses", "l1_requests",  "l1_hits",
+        "sectors",    "l1_visit_hits", "l2_sectors",    "dram_sectors", "dram_first_sectors"};
+    Json json = Json::object();
+    const auto add = [&](TrafficKey key) {
+        const TrafficFigure& figure = traffic_figures[key.index];
+        json[figure.name] = figure.total(c, caches);
+    };
+    for (const TrafficKey key : keys) add(key);
+    if (caches.levels == 3) add("l3_sectors");
     return json;
 }
 
@@ -57,16 +55,14 @@ Json level(const LevelFindings& found) {
     return json;
 }
 
-Json trace(const ExplainedTrace& t) {
+Json trace(const ExplainedTrace& t, const CacheUnits& caches) {
     const Counters all = t.totals();
-    const auto rate = [](std::uint64_t part, std::uint64_t whole) {
-        return json_of(static_cast<double>(part) / static_cast<double>(whole));
-    };
-    Json json{{"name", t.name},
-              {"totals", counters(all, t.findings.levels.size())},
-              {"l1_hit_rate", rate(all.l1_request_hits(), all.l1_requests)},
-              {"l1_visit_hit_rate", rate(all.l1_hits, all.sectors)},
-              {"dram_compulsory_share", rate(all.dram_first_sectors, all.dram_read_sectors())}};
+    Json json{{"name", t.name}, {"totals", counters(all, caches)}};
+    for (const TrafficKey key :
+         {TrafficKey("l1_hit_rate"), TrafficKey("l1_visit_hit_rate"), TrafficKey("dram_compulsory_share")}) {
+        const TrafficFigure& figure = traffic_figures[key.index];
+        json[figure.name] = json_of(figure.value(all, caches));
+    }
     Json& levels = json["levels"] = Json::object();
     for (std::size_t i = 0; i < t.findings.levels.size(); ++i)
         levels[fmt::format("l{}", i + 1)] = level(t.findings.levels[i]);
@@ -82,14 +78,16 @@ Counters sum_of(const std::vector<Counters>& by_launch) {
 }
 
 /// Both by sample index.
-Json factors(const std::vector<Counters>& base, const std::vector<Counters>& other, std::size_t levels) {
+Json factors(const std::vector<Counters>& base, const std::vector<Counters>& other, const CacheUnits& caches) {
     const Counters base_sum = sum_of(base), other_sum = sum_of(other);
-    const auto ratios = traffic_factors(base, other, levels);
+    const auto ratios = traffic_factors(base, other, caches);
     Json json = Json::object();
-    for (const FactorTerm& term : factor_terms(levels))
-        json[term.key] = {{"base", json_of(term.value(base_sum))},
-                          {"other", json_of(term.value(other_sum))},
-                          {"factor", ratios ? json_of((*ratios).*term.factor) : Json(nullptr)}};
+    for (std::size_t i = 0; const IdentityTerm& term : identity_terms(caches.levels)) {
+        json[term.key] = {{"base", json_of(term.value(base_sum, caches))},
+                          {"other", json_of(term.value(other_sum, caches))},
+                          {"factor", ratios ? json_of(ratios->terms[i]) : Json(nullptr)}};
+        ++i;
+    }
     return json;
 }
 
@@ -100,9 +98,9 @@ Json groups(const Explanation& e) {
         for (const LaunchGroup& other : others)
             if (base.name == other.name)
                 json.push_back({{"group", base.name},
-                                {"base", counters(sum_of(base.by_launch), e.levels())},
-                                {"other", counters(sum_of(other.by_launch), e.levels())},
-                                {"factors", factors(base.by_launch, other.by_launch, e.levels())}});
+                                {"base", counters(sum_of(base.by_launch), e.caches())},
+                                {"other", counters(sum_of(other.by_launch), e.caches())},
+                                {"factors", factors(base.by_launch, other.by_launch, e.caches())}});
     return json;
 }
 
@@ -112,16 +110,16 @@ std::string to_json(const Explanation& e) {
     Json json{{"scene", e.scene}, {"gpu", e.gpu}, {"spp", e.spp}, {"sector_bytes", e.sector_bytes}};
     Json& samples = json["samples"] = Json::array();
     for (const LaunchStatistics& launch : e.base.launches) samples.push_back(launch.sample);
-    json["dram_bytes_ratio"] = json_of(dram_bytes_ratio(e));
-    json["l2_bytes_ratio"] = json_of(l2_bytes_ratio(e));
-    json["factors"] = factors(e.base.by_launch(), e.other.by_launch(), e.levels());
+    json["dram_bytes_ratio"] = json_of(ratio(e, "dram_bytes_ratio"));
+    json["l2_bytes_ratio"] = json_of(ratio(e, "l2_bytes_ratio"));
+    json["factors"] = factors(e.base.by_launch(), e.other.by_launch(), e.caches());
     if (const auto all = e.factors()) {
         json["equal_miss_rates"] = json_of(all->equal_miss_rates);
-        json["cache_locality"] = json_of(all->cache_locality);
+        json["cache_locality"] = json_of(all->cache_locality());
     }
     json["groups"] = groups(e);
-    json["base"] = trace(e.base);
-    json["other"] = trace(e.other);
+    json["base"] = trace(e.base, e.caches());
+    json["other"] = trace(e.other, e.caches());
     if (!e.no_time.empty()) json["timed"] = nullptr;
     for (const SpeedUp& s : e.speed_ups)
         json["timed"].push_back({{"replay", s.replay.name},

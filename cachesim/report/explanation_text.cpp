@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "cachesim/analysis/estimate.hpp"
-#include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/groups.hpp"
@@ -51,25 +49,26 @@ std::string identity_table(const Explanation& e, std::size_t width) {
     table.column("", Align::left);
     for (const std::string& title : {e.base.name, e.other.name, std::string("ratio")})
         table.column(title, Align::right);
+    const CacheUnits caches = e.caches();
     const auto factors = e.factors();
-    const auto factor = [&](const std::optional<Estimate>& f) { return with_interval(f, 3); };
-    for (const FactorTerm& term : factor_terms(e.levels()))
-        table.row({term.name, term.quantity, figure(term.value(base)), figure(term.value(other)),
-                   factor(factors ? std::optional((*factors).*term.factor) : std::nullopt)});
-    const auto bytes = [&](const char* name, std::uint64_t Counters::*sectors, const Estimate& ratio) {
-        table.row({"product", name, figure(e.sector_bytes * quotient(base.*sectors, base.rays)),
-                   figure(e.sector_bytes * quotient(other.*sectors, other.rays)), with_interval(ratio, 3)});
+    for (std::size_t i = 0; const IdentityTerm& term : identity_terms(caches.levels)) {
+        table.row({term.name, term.quantity, figure(term.value(base, caches)), figure(term.value(other, caches)),
+                   with_interval(factors ? std::optional(factors->terms[i]) : std::nullopt, 3)});
+        ++i;
+    }
+    const auto product = [&](TrafficKey mean, TrafficKey key, const char* name) {
+        const TrafficFigure& f = traffic_figures[mean.index];
+        table.row({"product", name, figure(f.value(base, caches)), figure(f.value(other, caches)),
+                   with_interval(ratio(e, key), 3)});
     };
     if (factors) {
-        const auto sum = [&](const char* name, const char* quantity, double b, double o, const Estimate& ratio) {
-            table.row({name, quantity, figure(b), figure(o), factor(ratio)});
-        };
-        sum("cache locality", "all miss rates", quotient(base.dram_sectors, base.sectors),
-            quotient(other.dram_sectors, other.sectors), factors->cache_locality);
+        const TrafficFigure& f = traffic_figures[TrafficKey("cache_locality").index];
+        table.row({f.title, "all miss rates", figure(f.value(base, caches)), figure(f.value(other, caches)),
+                   with_interval(factors->cache_locality(), 3)});
     }
-    bytes("L2-to-L1 bytes/ray", &Counters::l2_sectors, l2_bytes_ratio(e));
-    bytes("DRAM bytes/ray", &Counters::dram_sectors, dram_bytes_ratio(e));
-    const auto hits = [](const Counters& c) { return percent(c.l1_request_hits(), c.l1_requests); };
+    product("l2_bytes_per_ray", "l2_bytes_ratio", "L2-to-L1 bytes/ray");
+    product("dram_bytes_per_ray", "dram_bytes_ratio", "DRAM bytes/ray");
+    const auto hits = [](const Counters& c) { return percent(c.request_hits(), c.requests); };
     return table.text(width) + '\n' +
            paragraph(
                fmt::format("L1 visit miss rate: of the distinct sectors of each warp access. L1 %, hits of load "
@@ -83,25 +82,13 @@ std::string bars(const Explanation& e) {
     const auto factors = e.factors();
     if (!factors || !(factors->product() > 0)) return {};
     std::vector<WaterfallStep> steps;
-    for (const FactorTerm& term : factor_terms(e.levels())) {
-        steps.push_back({term.name, ((*factors).*term.factor).mean});
-        if (term.factor == &Factors::l1_locality) steps.push_back({"= L2-to-L1 bytes", 1, true});
+    for (std::size_t i = 0; i < factors->terms.size(); ++i) {
+        steps.push_back({traffic_identity[i].name, factors->terms[i].mean});
+        if (i == terms_before_caches) steps.push_back({"= L2-to-L1 bytes", 1, true});
     }
     steps.push_back({"= DRAM bytes", 1, true});
     return "\nBytes per ray, factor by factor; logarithmic scale, to the left is less traffic\n\n" +
            waterfall(steps, text_width);
-}
-
-Estimate dram_ratio(const std::vector<Counters>& base, const std::vector<Counters>& other) {
-    const auto sums = [](const std::vector<Counters>& counts) {
-        Sums s;
-        for (const Counters& c : counts) {
-            s.y.push_back(static_cast<double>(c.dram_sectors));
-            s.x.push_back(static_cast<double>(c.rays));
-        }
-        return s;
-    };
-    return ratio_to_baseline(sums(other), sums(base));
 }
 
 /// The identity of each group, and what it contributes to the change of the whole.
@@ -114,7 +101,7 @@ std::string group_table(const Explanation& e, std::size_t width) {
     TextTable table;
     table.column("group", Align::left);
     for (const char* title : {"base", "other", "ratio"}) table.column(title, Align::right);
-    for (const FactorTerm& term : factor_terms(e.levels())) table.column(term.name, Align::right);
+    for (const IdentityTerm& term : identity_terms(e.caches().levels)) table.column(term.name, Align::right);
     table.column("change %", Align::right);
     for (const LaunchGroup& group : groups) {
         const auto match =
@@ -124,13 +111,15 @@ std::string group_table(const Explanation& e, std::size_t width) {
         const double after = e.sector_bytes * quotient(other.dram_sectors, other.rays);
         const std::vector<Counters> none(group.by_launch.size());
         const auto& by_launch = match == others.end() ? none : match->by_launch;
-        const Estimate ratio = dram_ratio(group.by_launch, by_launch);
-        const auto factors = traffic_factors(group.by_launch, by_launch, e.levels());
+        const Estimate ratio =
+            ratio_of(traffic_figures[TrafficKey("dram_bytes_ratio").index], group.by_launch, by_launch, e.caches());
+        const auto factors = traffic_factors(group.by_launch, by_launch, e.caches());
         std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(ratio.mean, 3)};
         std::vector<std::string> widths{"", "", "", half_width_cell(ratio, 3)};
-        for (const FactorTerm& term : factor_terms(e.levels())) {
-            cells.push_back(decimals(term.value(other) / term.value(base), 3));
-            widths.push_back(factors ? half_width_cell((*factors).*term.factor, 3) : "");
+        for (std::size_t i = 0; const IdentityTerm& term : identity_terms(e.caches().levels)) {
+            cells.push_back(decimals(term.value(other, e.caches()) / term.value(base, e.caches()), 3));
+            widths.push_back(factors ? half_width_cell(factors->terms[i], 3) : "");
+            ++i;
         }
         cells.push_back(decimals(100 * per_all(base, other) / per_all(base_all, other_all), 1));
         widths.emplace_back();

@@ -24,6 +24,14 @@ std::string half_width_text(const Estimate&, int digits);
 /// "±0.073" for a line below the mean, or nothing.
 std::string half_width_cell(const Estimate&, int digits);
 
+/// A figure in a column of its own.
+template <class Figure>
+std::string figure_cell(const Figure& figure, const std::optional<Estimate>& value) {
+    if (!value) return "-";
+    if (!figure.interval) return decimals(figure.scale * value->mean, figure.digits);
+    return figure.digits == about_four_digits ? with_interval(value) : with_interval(value, figure.digits);
+}
+
 /// A paragraph of lines of at most text_width columns, the second and later ones indented; ends in '\n'.
 std::string paragraph(const std::string& text, std::size_t indent = 0);
 

@@ -25,17 +25,50 @@ inline Json json_of(const Verdict& v) {
     return {{"level", v.level ? Json(*v.level) : Json(nullptr)}, {"text", v.text}};
 }
 
-/// What a row is of: scene, strategy, GPU, group, sample indices.
+/// What a row is of: scene, strategy, GPU.
+inline Json names_of(const Origin& o) {
+    return {{"scene", o.scene},           {"strategy", o.strategy},     {"sequence", o.sequence},
+            {"parameters", o.parameters}, {"thread_map", o.thread_map}, {"gpu", o.gpu}};
+}
+/// The same with group and sample indices.
 inline Json row_names(const Row& row) {
-    return {{"scene", row.scene},           {"strategy", row.strategy},
-            {"sequence", row.sequence},     {"parameters", row.parameters},
-            {"thread_map", row.thread_map}, {"gpu", row.gpu},
-            {"group", row.group},           {"spp", row.spp},
-            {"samples", row.samples}};
+    Json json = names_of(row);
+    json.update({{"group", row.group}, {"spp", row.spp}, {"samples", row.samples}});
+    return json;
 }
 
 /// A row of a report without its names, as to_json(Report) has it.
 Json traffic_json(const Report&, std::size_t row);
+
+/// What the figures of a report are: the value of "figures". `at`: the key of a row that holds those of the row;
+/// null: the row itself.
+Json figures_json(const Report&, const char* at);
+
+/// One of them: its title, unit, meaning and the way it is shown. docs/json.md.
+template <class Figure>
+Json figure_json(const Figure& figure, const char* at) {
+    constexpr const char* better[] = {nullptr, "lower", "higher"};
+    const auto text = [](const char* t) { return t ? Json(t) : Json(nullptr); };
+    Json path = figure.in_json() ? Json::array() : Json(nullptr);
+    for (const char* key : {at, figure.object, figure.name})
+        if (key && figure.in_json()) path.push_back(key);
+    std::string divisor = figure.denominator ? figure.denominator->name : "";
+    if (figure.per) divisor += std::string(" x ") + figure.per->name;
+    Json json{{"key", figure.key},
+              {"path", path},
+              {"title", figure.title},
+              {"unit", figure.unit},
+              {"definition", figure.definition},
+              {"numerator", figure.numerator.name},
+              {"denominator", divisor.empty() ? Json(nullptr) : Json(divisor)},
+              {"compared", figure.is_compared()},
+              {"better", text(better[static_cast<unsigned>(figure.better)])},
+              {"digits", figure.page_digits == about_four_digits ? Json(nullptr) : Json(figure.page_digits)},
+              {"interval", figure.interval},
+              {"page", figure.page}};
+    if (figure.profiler) json["profiler"] = figure.profiler;
+    return json;
+}
 
 /// The value of "by".
 inline const char* name_of(GroupBy by) {

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <variant>
 
-#include "cachesim/report/csv_field.hpp"
+#include "cachesim/report/csv_line.hpp"
 #include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/table.hpp"
 
@@ -16,45 +17,56 @@ namespace {
 /// A count, or a quotient: NaN where nothing was counted.
 using Value = std::variant<std::uint64_t, double>;
 
-Value quotient(std::uint64_t part, std::uint64_t whole, double scale = 1) {
-    return whole > 0 ? scale * static_cast<double>(part) / static_cast<double>(whole) : std::nan("");
+/// Whose accesses a metric counts. Sorts are neither loads nor stores.
+Counters loads(const Row& row) { return row.loads; }
+Counters stores(const Row& row) { return row.stores; }
+Counters loads_and_stores(const Row& row) {
+    Counters both = row.loads;
+    return both += row.stores;
 }
+Counters totals(const Row& row) { return row.totals; }
 
 /// A metric of Nsight Compute, and what it is here.
 struct Metric {
     const char* name;
-    Value (*value)(const Row&);
+    Counters (*of)(const Row&);
+    Count numerator;
+    std::optional<Count> denominator{};
+    double scale = 1;  ///< of a quotient
+
+    Value value(const Row& row) const {
+        const Counters counted = of(row);
+        const std::uint64_t part = numerator(counted, row.caches);
+        if (!denominator) return part;
+        const std::uint64_t whole = (*denominator)(counted, row.caches);
+        return whole > 0 ? scale * static_cast<double>(part) / static_cast<double>(whole) : std::nan("");
+    }
 };
 
+constexpr Count l2_misses{"l2_misses",
+                          [](const Counters& c, const CacheUnits&) { return c.levels[1].sectors - c.levels[1].hits; }};
+
 constexpr Metric of_loads[] = {
-    {"l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum", [](const Row& r) -> Value { return r.loads.l1_requests; }},
-    {"l1tex__t_sector_pipe_lsu_mem_global_op_ld_hit_rate.pct",
-     [](const Row& r) { return quotient(r.loads.l1_request_hits(), r.loads.l1_requests, 100); }},
-    {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio",
-     [](const Row& r) { return quotient(r.loads.l1_requests, r.loads.loads); }},
-    {"l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum", [](const Row& r) -> Value { return r.loads.l2_sectors; }},
-    {"lts__t_sectors_srcunit_tex_op_read_lookup_hit.sum", [](const Row& r) -> Value { return r.loads.l2_hits; }},
-    {"lts__t_sectors_srcunit_tex_op_read_lookup_miss.sum",
-     [](const Row& r) -> Value { return r.loads.l2_sectors - r.loads.l2_hits; }},
-    {"lts__t_sector_op_read_hit_rate.pct",
-     [](const Row& r) { return quotient(r.loads.l2_hits, r.loads.l2_sectors, 100); }},
-    {"dram__bytes_read.sum", [](const Row& r) -> Value { return r.loads.dram_sectors * r.sector_bytes; }},
-    {"smsp__thread_inst_executed_per_inst_executed.ratio",
-     [](const Row& r) {
-         return quotient(r.loads.lane_accesses + r.stores.lane_accesses,
-                         r.loads.warp_accesses + r.stores.warp_accesses);
-     }},
+    {"l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum", loads, counts::requests},
+    {"l1tex__t_sector_pipe_lsu_mem_global_op_ld_hit_rate.pct", loads, counts::request_hits, counts::requests, 100},
+    {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_ld.ratio", loads, counts::requests, counts::loads},
+    {"l1tex__m_xbar2l1tex_read_sectors_mem_lg_op_ld.sum", loads, counts::asked<1>},
+    {"lts__t_sectors_srcunit_tex_op_read_lookup_hit.sum", loads, counts::hits<1>},
+    {"lts__t_sectors_srcunit_tex_op_read_lookup_miss.sum", loads, l2_misses},
+    {"lts__t_sector_op_read_hit_rate.pct", loads, counts::hits<1>, counts::asked<1>, 100},
+    {"dram__bytes_read.sum", loads, counts::dram_bytes},
+    {"smsp__thread_inst_executed_per_inst_executed.ratio", loads_and_stores, counts::lane_accesses,
+     counts::warp_accesses},
 };
 
 /// Shown where some trace is of a wavefront. None is of hits: a written sector is in L2 afterwards, whatever was there.
 constexpr Metric of_stores[] = {
-    {"l1tex__t_sectors_pipe_lsu_mem_global_op_st.sum", [](const Row& r) -> Value { return r.stores.l1_requests; }},
-    {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_st.ratio",
-     [](const Row& r) { return quotient(r.stores.l1_requests, r.stores.loads); }},
-    {"l1tex__m_l1tex2xbar_write_sectors_mem_lg_op_st.sum", [](const Row& r) -> Value { return r.stores.l2_sectors; }},
-    {"lts__t_sectors_op_write.sum", [](const Row& r) -> Value { return r.stores.l2_sectors; }},
-    {"dram__bytes_write.sum", [](const Row& r) -> Value { return r.stores.dram_sectors * r.sector_bytes; }},
-    {"dram__bytes.sum", [](const Row& r) -> Value { return r.totals.dram_sectors * r.sector_bytes; }},
+    {"l1tex__t_sectors_pipe_lsu_mem_global_op_st.sum", stores, counts::requests},
+    {"l1tex__average_t_sectors_per_request_pipe_lsu_mem_global_op_st.ratio", stores, counts::requests, counts::loads},
+    {"l1tex__m_l1tex2xbar_write_sectors_mem_lg_op_st.sum", stores, counts::asked<1>},
+    {"lts__t_sectors_op_write.sum", stores, counts::asked<1>},
+    {"dram__bytes_write.sum", stores, counts::dram_bytes},
+    {"dram__bytes.sum", totals, counts::dram_bytes},
 };
 
 std::vector<Metric> metrics_of(const Report& report) {
@@ -115,16 +127,15 @@ std::string to_json(const ProfilerReport& profile) {
 
 std::string to_csv(const ProfilerReport& profile) {
     const std::vector<Metric> metrics = metrics_of(profile.report);
-    std::string csv = "scene,strategy,sequence,parameters,thread_map,gpu,group,spp,samples";
-    for (const Metric& metric : metrics) csv += fmt::format(",{}", metric.name);
-    csv += '\n';
+    CsvLine titles;
+    add_titles_of_names(titles);
+    for (const Metric& metric : metrics) titles.text(metric.name);
+    std::string csv = titles.end();
     for (const Row& row : profile.report.rows) {
-        for (const auto* name :
-             {&row.scene, &row.strategy, &row.sequence, &row.parameters, &row.thread_map, &row.gpu, &row.group})
-            csv += csv_field(*name) + ',';
-        csv += fmt::format("{},{}", row.spp, fmt::join(row.samples, " "));
-        for (const Metric& metric : metrics) csv += ',' + to_string(metric.value(row), -1, "");
-        csv += '\n';
+        CsvLine line;
+        add_names(line, row);
+        for (const Metric& metric : metrics) line.text(to_string(metric.value(row), -1, ""));
+        csv += line.end();
     }
     return csv;
 }

@@ -2,54 +2,42 @@
 // intervals, ratios to a baseline paired by sample index, and the exact split of the traffic ratio into factors.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cachesim/analysis/estimate.hpp"
-#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/analysis/traffic_identity.hpp"
 #include "cachesim/replay/statistics.hpp"
+#include "cachesim/report/figures/traffic_figures.hpp"
+#include "cachesim/report/origin.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::cachesim {
 
 /// All launches of one strategy on one GPU.
-struct Series {
-    std::string scene, strategy, sequence, parameters, thread_map, gpu;
-    std::uint64_t spp = 0;
-    std::uint32_t sector_bytes = 32;         ///< of the GPU's caches: turns sectors into bytes
-    std::size_t levels = 2;                  ///< of the GPU's caches: 2 or 3
+struct Series : Origin {
     std::vector<LaunchStatistics> launches;  ///< one per sample index, ascending
 };
 
 enum class GroupBy { none, bounce, ray, object };  ///< ray: camera, bounce, shadow; object: node, triangle, texel
 
-struct Row {
-    std::string scene, strategy, sequence, parameters, thread_map, gpu,
-        group;  ///< group: "all", "bounce 1", "shadow 0", "node"
-    std::uint64_t spp = 0;
-    std::uint32_t sector_bytes = 32;
-    std::size_t levels = 2;
+struct Row : Origin {
+    std::string group;  ///< "all", "bounce 1", "shadow 0", "node"
     std::vector<std::uint32_t> samples;
-    Counters totals;         ///< over all sample indices; in groups by object, `rays` are those of the whole launch
-    Counters loads, stores;  ///< of totals: what reads and what writes; sorts are neither
-    /// l1_hit_rate: of requests, as Nsight Compute counts (l1tex__t_sector_hit_rate): every load of a visit asks for
-    /// its sectors, so most requests hit what an earlier load fetched (LoadCounter).
-    Estimate rays, steps_per_ray, active_lanes, sectors_per_access, l1_hit_rate, l2_hit_rate, l2_bytes_per_ray,
-        dram_bytes_per_ray;
-    /// Of visits: of the distinct sectors of each warp access, those found in L1. As many misses, fewer hits; 1 minus
-    /// it is the L1 miss rate of the traffic identity.
-    Estimate l1_visit_hit_rate;
-    /// Of the sectors read from DRAM, those that no cache of the GPU held before: compulsory misses, which come of
-    /// beginning each launch with cold caches.
-    Estimate dram_compulsory_share;
-    std::optional<Estimate> l3_hit_rate, l3_bytes_per_ray;  ///< bytes that L2 asks of L3; absent where there is no L3
-    /// Of dram_bytes_per_ray: what kernels write, and what sorts move. Absent where no trace is of a wavefront.
-    std::optional<Estimate> written_bytes_per_ray, sort_bytes_per_ray;
-    /// Against the baseline row of the same scene, sequence, N, thread map, GPU and group; absent for the baseline
-    /// itself or where there is none or its sample indices differ (a note says so).
-    std::optional<Estimate> l2_bytes_ratio, l3_bytes_ratio, dram_bytes_ratio;  ///< l3: absent where there is no L3
+    std::vector<Counters> by_launch;  ///< one per sample index; in groups by object, `rays` are those of the launch
+    Counters totals;                  ///< of these
+    Counters loads, stores;           ///< of totals: what reads and what writes; sorts are neither
+
+    /// What traffic_figures say of the row, but for totals. Absent where they say nothing: figures of an L3 where there
+    /// is none; of a wavefront where no trace is of one; against a baseline, for the baseline itself and where there is
+    /// none of the same scene, sequence, N, thread map, GPU and group, or its sample indices differ (a note says so).
+    std::array<std::optional<Estimate>, std::size(traffic_figures)> figures;
+    /// row["dram_bytes_ratio"]
+    const std::optional<Estimate>& operator[](TrafficKey key) const { return figures[key.index]; }
+    /// Against the baseline; absent where a factor has no value, too.
     std::optional<Factors> factors;
 };
 
@@ -63,6 +51,7 @@ struct Report {
     bool has_l3() const;
     /// Likewise, whether any row writes to DRAM or sorts.
     bool has_wavefront() const;
+    bool has(Presence) const;
 };
 
 /// What a sentence calls a row: "micro-jitter, N 64, gtx-980-ti", and what else tells it from others.

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <set>
+#include <string_view>
 
-#include "cachesim/analysis/factor_terms.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/table.hpp"
+#include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
 
@@ -32,8 +32,6 @@ std::string grouped(std::uint64_t value) {
     return digits;
 }
 
-std::string percent(const Estimate& rate) { return decimals(100 * rate.mean, 1); }
-
 /// What rows are of. Scene, sequence, thread map and parameters only where they tell rows apart.
 std::vector<Column> identity_columns(const Report& report) {
     std::set<std::string> scenes, sequences, thread_maps;
@@ -47,15 +45,15 @@ std::vector<Column> identity_columns(const Report& report) {
         parameters.insert({row.strategy, row.parameters});
     }
     std::vector<Column> columns;
-    if (scenes.size() > 1) columns.push_back({"scene", Align::left, &Row::scene});
-    columns.push_back({"strategy", Align::left, &Row::strategy});
+    if (scenes.size() > 1) columns.push_back({"scene", Align::left, &Origin::scene});
+    columns.push_back({"strategy", Align::left, &Origin::strategy});
     if (parameters.size() > strategies.size())
         columns.push_back({"parameters", Align::left,
                            [](const Row& r) { return r.parameters.empty() ? std::string("-") : r.parameters; }});
-    if (sequences.size() > 1) columns.push_back({"sequence", Align::left, &Row::sequence});
-    if (thread_maps.size() > 1) columns.push_back({"threads", Align::left, &Row::thread_map});
+    if (sequences.size() > 1) columns.push_back({"sequence", Align::left, &Origin::sequence});
+    if (thread_maps.size() > 1) columns.push_back({"threads", Align::left, &Origin::thread_map});
     columns.push_back({"N", Align::right, [](const Row& r) { return fmt::format("{}", r.spp); }});
-    columns.push_back({"GPU", Align::left, &Row::gpu});
+    columns.push_back({"GPU", Align::left, &Origin::gpu});
     if (report.by != GroupBy::none) columns.push_back({"group", Align::left, &Row::group});
     return columns;
 }
@@ -64,30 +62,31 @@ void add_subjects(TextTable& table, const std::vector<Column>& columns) {
     for (const Column& column : columns) table.subject(column.title, column.align);
 }
 
+/// The figures of the main table.
+std::vector<std::size_t> columns_of(const Report& report) {
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < std::size(traffic_figures); ++i) {
+        const TrafficFigure& figure = traffic_figures[i];
+        if (figure.column && !figure.of_factors && report.has(figure.presence) &&
+            !(figure.is_compared() && report.baseline.empty()))
+            columns.push_back(i);
+    }
+    return columns;
+}
+
+std::string cell(const Report& report, const Row& row, std::size_t i) {
+    const TrafficFigure& figure = traffic_figures[i];
+    if (figure.of == Of::total) return grouped(figure.total(row.totals, row.caches));
+    if (figure.is_compared() && row.strategy == report.baseline) return "baseline";
+    return figure_cell(figure, row.figures[i]);
+}
+
 std::string main_table(const Report& report, std::size_t width) {
     const std::vector<Column> subjects = identity_columns(report);
     std::vector<Column> figures;
-    const auto figure = [&](const char* title, unsigned rank, std::function<std::string(const Row&)> cell) {
-        figures.push_back({title, Align::right, std::move(cell), rank});
-    };
-    figure("rays", 7, [](const Row& r) { return grouped(r.totals.rays); });
-    figure("steps/ray", 6, [](const Row& r) { return decimals(r.steps_per_ray.mean, 1); });
-    figure("lanes/acc", 3, [](const Row& r) { return decimals(r.active_lanes.mean, 2); });
-    figure("sectors/acc", 5, [](const Row& r) { return decimals(r.sectors_per_access.mean, 2); });
-    figure("L1 %", 1, [](const Row& r) { return percent(r.l1_hit_rate); });
-    figure("L2 %", 2, [](const Row& r) { return percent(r.l2_hit_rate); });
-    if (report.has_l3()) figure("L3 %", 2, [](const Row& r) { return r.l3_hit_rate ? percent(*r.l3_hit_rate) : "-"; });
-    figure("L2->L1 B/ray", 0, [](const Row& r) { return with_interval(r.l2_bytes_per_ray); });
-    if (report.has_l3()) figure("L3->L2 B/ray", 0, [](const Row& r) { return with_interval(r.l3_bytes_per_ray); });
-    figure("DRAM B/ray", 0, [](const Row& r) { return with_interval(r.dram_bytes_per_ray); });
-    if (report.has_wavefront()) {
-        figure("written", 4, [](const Row& r) { return with_interval(r.written_bytes_per_ray); });
-        figure("sort", 4, [](const Row& r) { return with_interval(r.sort_bytes_per_ray); });
-    }
-    if (!report.baseline.empty())
-        figure("DRAM ratio", 0, [&](const Row& r) {
-            return r.strategy == report.baseline ? "baseline" : with_interval(r.dram_bytes_ratio);
-        });
+    for (const std::size_t i : columns_of(report))
+        figures.push_back({traffic_figures[i].column, Align::right,
+                           [&report, i](const Row& row) { return cell(report, row, i); }, traffic_figures[i].rank});
     TextTable table;
     add_subjects(table, subjects);
     for (const Column& column : figures) table.column(column.title, column.align, column.rank);
@@ -100,14 +99,30 @@ std::string main_table(const Report& report, std::size_t width) {
     return table.text(width);
 }
 
+/// "L2 %, L3 %: of sectors asked for": what the table says of its columns, each once. `compared`: of ratios.
+std::string legend_of(const Report& report, bool compared) {
+    struct Entry {
+        std::string subjects, words;
+    };
+    std::vector<Entry> entries;
+    for (const std::size_t i : columns_of(report)) {
+        const TrafficFigure& figure = traffic_figures[i];
+        if (!figure.legend || figure.is_compared() != compared) continue;
+        const std::string words = fmt::format(fmt::runtime(figure.legend), report.baseline);
+        if (entries.empty() || entries.back().words != words)
+            entries.push_back({figure.subject, words});
+        else if (entries.back().subjects != figure.subject)
+            entries.back().subjects += std::string(", ") + figure.subject;
+    }
+    std::string text;
+    for (const Entry& e : entries) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", e.subjects, e.words);
+    return text;
+}
+
 std::string legend(const Report& report) {
-    std::string text = fmt::format(
-        "rays: all sample indices together; step: one lane's visit to a node or triangle; acc: warp access; L1 %: hits "
-        "of load requests, as Nsight Compute counts (l1tex__t_sector_hit_rate); {}: of sectors asked for; B/ray: bytes "
-        "read, by launches that begin with cold caches; ±: half width of the 95 % confidence interval over sample "
-        "indices{}.",
-        report.has_l3() ? "L2 %, L3 %" : "L2 %",
-        report.baseline.empty() ? "" : fmt::format("; DRAM ratio: DRAM B/ray over that of {}", report.baseline));
+    const std::string ratios = legend_of(report, true);
+    std::string text = fmt::format("{}; ±: half width of the 95 % confidence interval over sample indices{}{}.",
+                                   legend_of(report, false), ratios.empty() ? "" : "; ", ratios);
     if (report.has_wavefront())
         text +=
             " Wavefronts: DRAM B/ray includes what kernels write to it and what sorting rays reads and writes; both "
@@ -124,21 +139,21 @@ std::string factor_table(const Report& report, std::size_t width) {
     const std::vector<Column> columns = identity_columns(report);
     struct Cell {
         std::string title;
-        std::function<std::optional<Estimate>(const Row&)> value;
+        std::size_t figure;
     };
     std::vector<Cell> cells;
     const std::size_t levels = report.has_l3() ? 3 : 2;
-    constexpr const char* titles[] = {"work", "SIMT", "coal.", "L1 loc.", "L2 loc.", "L3 loc."};
-    for (std::size_t i = 0; i < factor_terms(levels).size(); ++i) {
-        const FactorTerm& term = factor_terms(levels)[i];
-        cells.push_back({titles[i], [&term](const Row& r) {
-                             const bool has = term.factor != &Factors::l3_locality || r.levels == 3;
-                             return has ? std::optional((*r.factors).*term.factor) : std::nullopt;
-                         }});
-        if (term.factor == &Factors::l1_locality) cells.push_back({"=L2->L1", &Row::l2_bytes_ratio});
-        if (levels == 3 && term.factor == &Factors::l2_locality) cells.push_back({"=L3->L2", &Row::l3_bytes_ratio});
+    std::size_t level = 0;
+    for (std::size_t i = 0; i < std::size(traffic_figures); ++i) {
+        const TrafficFigure& figure = traffic_figures[i];
+        if (!figure.column || !figure.of_factors || !report.has(figure.presence)) continue;
+        cells.push_back({figure.column, i});
+        // Behind the miss rate of a level, what it fetches.
+        if (!std::string_view(figure.key).ends_with("locality")) continue;
+        const std::string bytes = level + 1 == levels ? "=DRAM" : fmt::format("=L{}->L{}", level + 2, level + 1);
+        cells.push_back({bytes, bytes_figures(levels)[level].ratio.index});
+        ++level;
     }
-    cells.push_back({"=DRAM", &Row::dram_bytes_ratio});
     TextTable table;
     add_subjects(table, columns);
     for (const Cell& cell : cells) table.column(cell.title, Align::right);
@@ -150,7 +165,7 @@ std::string factor_table(const Report& report, std::size_t width) {
         for (const Column& column : columns) means.push_back(column.cell(row));
         bool intervals = false;
         for (const Cell& cell : cells) {
-            const std::optional<Estimate> value = cell.value(row);
+            const std::optional<Estimate>& value = row.figures[cell.figure];
             means.push_back(value ? decimals(value->mean, 3) : "-");
             widths.push_back(value ? half_width_cell(*value, 3) : "");
             intervals |= !widths.back().empty();

@@ -1,19 +1,14 @@
 #include "cachesim/report/timed_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
-#include <tuple>
+#include <utility>
 
 #include "cachesim/analysis/estimate.hpp"
-#include "cachesim/report/pairing.hpp"
-#include "cachesim/report/timed_figures.hpp"
-#include "traces/error.hpp"
 
 namespace raycache::cachesim {
-
-using namespace figures;
 
 namespace {
 
@@ -23,31 +18,42 @@ TimedStatistics sum_of(const std::vector<TimedStatistics>& launches) {
     return sum;
 }
 
-Sums cycles_over_rays(const TimedSeries& series) {
+Sums sums(const TimedFigure& figure, const TimedSeries& series) {
     Sums sums;
     for (const TimedStatistics& t : series.launches) {
-        sums.y.push_back(static_cast<double>(t.cycles));
-        sums.x.push_back(static_cast<double>(t.rays));
+        sums.y.push_back(figure.numerator(t, series.caches));
+        sums.x.push_back(figure.denominator ? (*figure.denominator)(t, series.caches) : 1.0);
     }
     return sums;
 }
-Sums cycles(const TimedSeries& series) {
-    Sums sums = cycles_over_rays(series);
-    std::fill(sums.x.begin(), sums.x.end(), 1.0);
-    return sums;
+
+std::vector<std::uint32_t> samples_of(const TimedSeries& series) {
+    std::vector<std::uint32_t> all;
+    for (const TimedStatistics& t : series.launches) all.push_back(t.sample);
+    return all;
 }
 
-bool comparable(const TimedSeries& a, const TimedSeries& b) {
-    const auto key = [](const TimedSeries& s) { return std::tie(s.scene, s.sequence, s.spp, s.gpu); };
-    return key(a) == key(b) && same_work_per_launch(a.thread_map, b.thread_map);
+TimedRow make_row(const TimedSeries& series) {
+    TimedRow row{series, sum_of(series.launches), {}, 0, {}};
+    for (std::size_t i = 0; i < row.figures.size(); ++i) {
+        const TimedFigure& figure = timed_figures[i];
+        const double value = figure.value(row.totals, row.caches);
+        if (figure.table == Table::use && figure.rank == 0 && value > row.busiest_share) {
+            row.busiest_share = value;
+            row.busiest = figure.title;
+        }
+        if (figure.in_time && !row.has_time()) continue;
+        if (figure.of == Of::mean) row.figures[i] = ratio_of_totals(sums(figure, series));
+        if (figure.of == Of::quotient) row.figures[i] = Estimate{value, {}};
+    }
+    return row;
 }
 
 /// One for each GPU whose time is not predicted.
 void note_missing_times(TimedReport& report) {
     for (const TimedRow& row : report.rows)
-        if (!row.has_time() &&
-            std::find(report.notes.begin(), report.notes.end(), row.series.no_time) == report.notes.end())
-            report.notes.push_back(row.series.no_time);
+        if (!row.has_time() && std::find(report.notes.begin(), report.notes.end(), row.no_time) == report.notes.end())
+            report.notes.push_back(row.no_time);
 }
 
 /// A note if warps take so few of their slots that cycles say nothing of throughput.
@@ -56,7 +62,7 @@ void note_occupancy(TimedReport& report) {
     std::vector<std::string> names;
     for (const TimedRow& row : report.rows)
         if (row.has_time() && row.totals.occupancy() < few && row.totals.warps)
-            names.push_back(fmt::format("{}, N {}, {}", row.series.strategy, row.series.spp, row.series.gpu));
+            names.push_back(fmt::format("{}, N {}, {}", row.strategy, row.spp, row.gpu));
     if (names.empty()) return;
     const bool all = names.size() == report.rows.size();
     report.notes.push_back(fmt::format(
@@ -71,36 +77,15 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
                               const std::vector<Series>& traffic) {
     TimedReport report;
     report.baseline = baseline;
-    if (!baseline.empty() &&
-        std::none_of(all.begin(), all.end(), [&](const TimedSeries& s) { return s.strategy == baseline; })) {
-        std::set<std::string> names;
-        for (const TimedSeries& s : all) names.insert(s.strategy);
-        throw UsageError(
-            fmt::format("baseline: expected one of the strategies {}, found \"{}\"", fmt::join(names, ", "), baseline));
-    }
+    check_baseline(all, baseline);
     for (const TimedSeries& series : all) {
-        TimedRow row;
-        row.series = series;
-        row.totals = sum_of(series.launches);
-        row.cycles_per_ray = ratio_of_totals(cycles_over_rays(series));
-        for (const Named& r : resources) {
-            const double share = utilisation(row.totals, row.totals.*r.resource);
-            if (share > row.busiest_share) {
-                row.busiest_share = share;
-                row.busiest = r.name;
-            }
-        }
-        const auto find_base = [&](bool same_map) {
-            return std::find_if(all.begin(), all.end(), [&](const TimedSeries& s) {
-                return s.strategy == baseline && comparable(s, series) &&
-                       (!same_map || s.thread_map == series.thread_map);
-            });
-        };
-        auto base = find_base(true);
-        if (base == all.end()) base = find_base(false);
-        if (row.has_time() && base != all.end() && series.strategy != baseline) {
-            if (samples(*base) == samples(series)) {
-                row.speed_up = ratio_to_baseline(cycles(*base), cycles(series));
+        TimedRow row = make_row(series);
+        const TimedSeries* const base = find_baseline(all, series, baseline, [](const TimedSeries&) { return true; });
+        if (row.has_time() && base && series.strategy != baseline) {
+            if (samples_of(*base) == samples_of(series)) {
+                for (std::size_t i = 0; i < row.figures.size(); ++i)
+                    if (const TimedFigure& figure = timed_figures[i]; figure.of == Of::gain)
+                        row.figures[i] = ratio_to_baseline(sums(figure, *base), sums(figure, series));
             } else {
                 report.notes.push_back(
                     fmt::format("no speed-up for strategy {}, N {}: its sample indices are not those "
@@ -119,14 +104,20 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
     return report;
 }
 
+std::vector<std::uint32_t> TimedRow::samples() const { return samples_of(*this); }
+
+bool TimedReport::has_l3() const {
+    return std::any_of(rows.begin(), rows.end(), [](const TimedRow& row) { return row.totals.l3.requests() > 0; });
+}
+
 std::optional<Verdict> verdict_of(const TimedReport& report, std::size_t row) {
     Difference d;
     if (!report.traffic.rows.empty()) d = difference_of(report.traffic.rows[row]);
     const TimedRow& timed = report.rows[row];
-    d.speed_up = timed.speed_up;
-    d.traced = timed.series.launches.size();
-    d.spp = timed.series.spp;
-    if (!d.speed_up && !d.dram_bytes) return std::nullopt;
+    d.speed_up = timed["speed_up"];
+    d.traced = timed.launches.size();
+    d.spp = timed.spp;
+    if (!d.speed_up && d.bytes.empty()) return std::nullopt;
     return verdict(d);
 }
 

@@ -1,38 +1,40 @@
 // From timed replays to findings: cycles, what binds them, and the predicted speed-up against a baseline.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cachesim/replay/timed/timed_statistics.hpp"
+#include "cachesim/report/figures/timed_figures.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
 
 /// All launches of one strategy on one GPU.
-struct TimedSeries {
-    std::string scene, strategy, sequence, parameters, thread_map, gpu;
-    std::uint64_t spp = 0;
-    std::uint32_t sector_bytes = 32;
+struct TimedSeries : Origin {
     std::string no_time;  ///< no_time_note() of the GPU: only the counts of the launches are to be shown
     std::vector<TimedStatistics> launches;  ///< one per sample index, ascending
 };
 
-struct TimedRow {
-    TimedSeries series;
+struct TimedRow : TimedSeries {
     TimedStatistics totals;    ///< sums over all launches
     std::string busiest;       ///< the resource that is in use most of the time
     double busiest_share = 0;  ///< of its time
     /// Nothing is in use half of its time: latency is the bottleneck.
     bool waits_most() const { return busiest_share < 0.5; }
     /// Whether cycles, and all that is computed from them, are a prediction.
-    bool has_time() const { return series.no_time.empty(); }
-    Estimate cycles_per_ray;
-    /// The baseline's cycles over this row's; over the same scene, sequence, N, thread map and GPU.
-    std::optional<Estimate> speed_up;
+    bool has_time() const { return no_time.empty(); }
+    /// What timed_figures say of the row, but for totals. Absent where they say nothing: what depends on time, where
+    /// none is predicted; against a baseline, as in Row.
+    std::array<std::optional<Estimate>, std::size(timed_figures)> figures;
+    /// row["cycles_per_ray"]
+    const std::optional<Estimate>& operator[](TimedKey key) const { return figures[key.index]; }
+
+    std::vector<std::uint32_t> samples() const;
 };
 
 struct TimedReport {
@@ -41,6 +43,9 @@ struct TimedReport {
     /// What the functional replay counts of the same launches, row by row; no rows where none was made.
     Report traffic;
     std::vector<std::string> notes;
+
+    /// Whether any row's GPU has an L3 that was asked for anything.
+    bool has_l3() const;
 };
 
 /// `traffic`: functional replays of the same launches, series by series in the same order, or none. Throws UsageError

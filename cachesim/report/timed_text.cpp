@@ -1,17 +1,17 @@
 // A timed report as tables for a terminal.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/table.hpp"
-#include "cachesim/report/timed_figures.hpp"
 #include "cachesim/report/timed_report.hpp"
+#include "cachesim/report/verdict.hpp"
 
 namespace raycache::cachesim {
-
-using namespace figures;
 
 namespace {
 
@@ -33,9 +33,8 @@ public:
         // Settings of one strategy that tell rows apart, such as K.
         for (const TimedRow& row : report.rows)
             for (const TimedRow& other : report.rows)
-                with_parameters_ |= row.series.strategy == other.series.strategy &&
-                                    row.series.spp == other.series.spp &&
-                                    row.series.parameters != other.series.parameters;
+                with_parameters_ |=
+                    row.strategy == other.strategy && row.spp == other.spp && row.parameters != other.parameters;
     }
 
     TextTable make() const {
@@ -47,15 +46,21 @@ public:
         return table;
     }
     void add(TextTable& table, const TimedRow& row, const std::vector<std::string>& cells) const {
-        std::vector<std::string> all{row.series.strategy};
-        if (with_parameters_) all.push_back(row.series.parameters.empty() ? "-" : row.series.parameters);
-        all.push_back(fmt::format("{}", row.series.spp));
-        all.push_back(row.series.gpu);
+        std::vector<std::string> all{row.strategy};
+        if (with_parameters_) all.push_back(row.parameters.empty() ? "-" : row.parameters);
+        all.push_back(fmt::format("{}", row.spp));
+        all.push_back(row.gpu);
         all.insert(all.end(), cells.begin(), cells.end());
         table.row(std::move(all));
     }
+    std::string cell(const TimedRow& row, std::size_t i) const {
+        const TimedFigure& figure = timed_figures[i];
+        if (figure.in_time && !row.has_time()) return "-";
+        if (figure.of == Of::total) return fmt::format("{}", figure.total(row.totals, row.caches));
+        return figure.is_compared() ? against_base(row, row.figures[i]) : figure_cell(figure, row.figures[i]);
+    }
     std::string against_base(const TimedRow& row, const std::optional<Estimate>& ratio) const {
-        return row.series.strategy == report_.baseline ? "1" : with_interval(ratio, 3);
+        return row.strategy == report_.baseline ? "1" : with_interval(ratio, 3);
     }
 
 private:
@@ -63,20 +68,24 @@ private:
     bool with_parameters_ = false;
 };
 
-std::string times_table(const TimedReport& report, const Tables& tables, std::size_t width) {
+/// One of the tables of timed_figures. `words`: what stands in a last column of words, if any.
+template <class Words = std::nullptr_t>
+std::string figures_table(const TimedReport& report, const Tables& tables, std::size_t width, Table which,
+                          const char* title_of_words = nullptr, Words words = nullptr) {
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < timed_figures.size(); ++i) {
+        const TimedFigure& figure = timed_figures[i];
+        if (figure.column && figure.table == which && (figure.presence == Presence::always || report.has_l3()))
+            columns.push_back(i);
+    }
     TextTable table = tables.make();
-    table.column("cycles", Align::right, 3);
-    table.column("ms", Align::right, 2);
-    table.column("cycles/ray", Align::right, 1);
-    for (const char* title : {"speed-up", "occupancy %"}) table.column(title, Align::right);
-    table.column("bottleneck", Align::left);
+    for (const std::size_t i : columns) table.column(timed_figures[i].column, Align::right, timed_figures[i].rank);
+    if (title_of_words) table.column(title_of_words, Align::left);
     for (const TimedRow& row : report.rows) {
-        const TimedStatistics& t = row.totals;
-        const bool time = row.has_time();
-        tables.add(table, row,
-                   {time ? fmt::format("{}", t.cycles) : "-", decimals(in_time(row, 1e3 * t.seconds), 3),
-                    time ? with_interval(row.cycles_per_ray, 2) : "-",
-                    time ? tables.against_base(row, row.speed_up) : "-", percent(occupancy(row)), bottleneck(row)});
+        std::vector<std::string> cells;
+        for (const std::size_t i : columns) cells.push_back(tables.cell(row, i));
+        if constexpr (!std::is_null_pointer_v<Words>) cells.push_back(words(row));
+        tables.add(table, row, cells);
     }
     return table.text(width);
 }
@@ -85,77 +94,25 @@ std::string times_table(const TimedReport& report, const Tables& tables, std::si
 std::string traffic_table(const TimedReport& report, const Tables& tables, std::size_t width) {
     if (report.traffic.rows.empty()) return {};
     TextTable table = tables.make();
-    const bool l3 = report.traffic.has_l3(), ratios = !report.baseline.empty();
-    for (const char* name : {"L2->L1", "L3->L2", "DRAM"}) {
-        if (!l3 && std::string_view(name) == "L3->L2") continue;
+    const bool ratios = !report.baseline.empty();
+    const std::span<const BytesFigures> all = bytes_figures(report.traffic.has_l3() ? 3 : 2);
+    for (std::size_t level = 0; level < all.size(); ++level) {
         // Where there is no room for all, the bytes between L2 and L3 go first, then all but the ratios.
-        const bool middle = std::string_view(name) == "L3->L2";
-        table.column(fmt::format("{} B/ray", name), Align::right, ratios ? (middle ? 2 : 1) : 0);
-        if (ratios) table.column(fmt::format("{} ratio", name), Align::right);
+        const bool middle = level > 0 && level + 1 < all.size();
+        const char* const title = traffic_figures[all[level].mean.index].column;
+        table.column(title, Align::right, ratios ? (middle ? 2 : 1) : 0);
+        if (ratios) table.column(std::string(title, std::string_view(title).find(' ')) + " ratio", Align::right);
     }
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.traffic.rows[i];
         std::vector<std::string> cells;
-        const auto add = [&](const std::optional<Estimate>& bytes, const std::optional<Estimate>& ratio) {
-            cells.push_back(with_interval(bytes));
-            if (ratios) cells.push_back(tables.against_base(report.rows[i], ratio));
-        };
-        add(row.l2_bytes_per_ray, row.l2_bytes_ratio);
-        if (l3) add(row.l3_bytes_per_ray, row.l3_bytes_ratio);
-        add(row.dram_bytes_per_ray, row.dram_bytes_ratio);
+        for (const BytesFigures& bytes : all) {
+            cells.push_back(figure_cell(traffic_figures[bytes.mean.index], row[bytes.mean]));
+            if (ratios) cells.push_back(tables.against_base(report.rows[i], row[bytes.ratio]));
+        }
         tables.add(table, report.rows[i], cells);
     }
     return '\n' + table.text(width);
-}
-
-std::string hits_table(const TimedReport& report, const Tables& tables, std::size_t width) {
-    const bool three = std::any_of(report.rows.begin(), report.rows.end(),
-                                   [](const TimedRow& row) { return row.totals.l3.requests() > 0; });
-    TextTable table = tables.make();
-    for (const char* level : {"L1", "L2", "L3"}) {
-        if (!three && std::string_view(level) == "L3") break;
-        table.column(fmt::format("{} %", level), Align::right);
-        table.column("merged %", Align::right);
-    }
-    table.column("DRAM sectors", Align::right);
-    for (const TimedRow& row : report.rows) {
-        const TimedStatistics& t = row.totals;
-        std::vector<std::string> cells;
-        for (const LevelAnswers* level : {&t.l1, &t.l2, &t.l3}) {
-            if (!three && level == &t.l3) break;
-            cells.push_back(percent(hit_rate(*level, true)));
-            cells.push_back(percent(ratio(static_cast<double>(level->merges), static_cast<double>(level->requests()))));
-        }
-        cells.push_back(fmt::format("{}", t.dram_sectors));
-        tables.add(table, row, cells);
-    }
-    return table.text(width);
-}
-
-std::string use_table(const TimedReport& report, const Tables& tables, std::size_t width) {
-    TextTable table = tables.make();
-    for (const Named& r : resources) table.column(fmt::format("{} %", r.name), Align::right);
-    for (const Named& r : parts) table.column(fmt::format("{} %", r.name), Align::right, 1);
-    for (const TimedRow& row : report.rows) {
-        std::vector<std::string> cells;
-        for (const Named& r : resources) cells.push_back(percent(utilisation(row, r)));
-        for (const Named& r : parts) cells.push_back(percent(utilisation(row, r)));
-        tables.add(table, row, cells);
-    }
-    return table.text(width);
-}
-
-std::string rates_table(const TimedReport& report, const Tables& tables, std::size_t width) {
-    TextTable table = tables.make();
-    for (const char* title : {"L2 GB/s", "peak", "DRAM GB/s", "peak", "visit latency"})
-        table.column(title, Align::right);
-    for (const TimedRow& row : report.rows) {
-        const TimedStatistics& t = row.totals;
-        tables.add(table, row,
-                   {decimals(l2_gb_s(row), 1), decimals(t.peak_l2_gb_s, 0), decimals(dram_gb_s(row), 1),
-                    decimals(t.peak_dram_gb_s, 0), decimals(visit_latency(row), 0)});
-    }
-    return table.text(width);
 }
 
 std::string legend(const TimedReport& report) {
@@ -176,9 +133,11 @@ std::string legend(const TimedReport& report) {
 std::string to_text(const TimedReport& report, std::size_t width) {
     const Tables tables(report);
     std::string text;
-    text += times_table(report, tables, width) + traffic_table(report, tables, width) + '\n' +
-            hits_table(report, tables, width) + '\n' + use_table(report, tables, width) + '\n' +
-            rates_table(report, tables, width) + '\n' + legend(report);
+    text += figures_table(report, tables, width, Table::main, "bottleneck", bottleneck) +
+            traffic_table(report, tables, width) + '\n';
+    for (const Table which : {Table::hits, Table::use, Table::rates})
+        text += figures_table(report, tables, width, which) + '\n';
+    text += legend(report);
     if (!report.traffic.rows.empty()) text += factor_table(report.traffic, width);
     std::string verdicts;
     for (std::size_t i = 0; i < report.rows.size(); ++i)

@@ -13,21 +13,24 @@ namespace raycache::cachesim {
 
 namespace {
 
+/// What one level fetches.
 struct Bytes {
-    const char *key, *name;
-    Traffic traffic;
+    std::string key, name;
+    std::size_t level;
+    bool of_dram;
     Estimate ratio;
 };
 
 /// From L1 down.
 std::vector<Bytes> bytes_of(const Difference& d) {
     std::vector<Bytes> all;
-    const auto add = [&](const char* key, const char* name, Traffic traffic, const std::optional<Estimate>& ratio) {
-        if (ratio && std::isfinite(ratio->mean)) all.push_back({key, name, traffic, *ratio});
-    };
-    add("l2_bytes", "L2-to-L1 bytes/ray", Traffic::l2_to_l1, d.l2_bytes);
-    add("l3_bytes", "L3-to-L2 bytes/ray", Traffic::l3_to_l2, d.l3_bytes);
-    add("dram_bytes", "DRAM bytes/ray", Traffic::dram, d.dram_bytes);
+    for (std::size_t level = 0; level < d.bytes.size(); ++level) {
+        if (!std::isfinite(d.bytes[level].mean)) continue;
+        const bool dram = level + 1 == d.bytes.size();
+        all.push_back({dram ? "dram_bytes" : fmt::format("l{}_bytes", level + 2),
+                       dram ? "DRAM bytes/ray" : fmt::format("L{}-to-L{} bytes/ray", level + 2, level + 1), level, dram,
+                       d.bytes[level]});
+    }
     return all;
 }
 
@@ -58,7 +61,7 @@ std::string without_interval(const Difference& d, const std::vector<Bytes>& byte
     if (d.speed_up) parts.push_back(times_as_fast(*d.speed_up));
     for (const Bytes& b : bytes)
         parts.push_back(change_of(b.ratio) + ' ' + b.name +
-                        (b.traffic == bytes.front().traffic ? cause_text(d.factors, b.traffic) : ""));
+                        (b.level == bytes.front().level ? cause_text(d.factors, b.level) : ""));
     return list(parts, "; ") + "; from one sample index, so without an interval: raise --trace-samples";
 }
 
@@ -72,11 +75,24 @@ std::string nothing_certain(const Difference& d, const std::vector<Bytes>& bytes
 
 }  // namespace
 
+std::span<const BytesFigures> bytes_figures(std::size_t levels) {
+    static constexpr BytesFigures two[] = {{"l2_bytes_per_ray", "l2_bytes_ratio"},
+                                           {"dram_bytes_per_ray", "dram_bytes_ratio"}};
+    static constexpr BytesFigures three[] = {{"l2_bytes_per_ray", "l2_bytes_ratio"},
+                                             {"l3_bytes_per_ray", "l3_bytes_ratio"},
+                                             {"dram_bytes_per_ray", "dram_bytes_ratio"}};
+    return levels == 3 ? std::span<const BytesFigures>(three) : two;
+}
+
 Difference difference_of(const Row& row) {
-    return {std::nullopt,       row.l2_bytes_ratio,
-            row.l3_bytes_ratio, row.dram_bytes_ratio,
-            row.factors,        row.dram_compulsory_share.mean,
-            row.samples.size(), row.spp};
+    Difference d;
+    for (const BytesFigures& bytes : bytes_figures(row.caches.levels))
+        if (row[bytes.ratio]) d.bytes.push_back(*row[bytes.ratio]);
+    d.factors = row.factors;
+    d.dram_compulsory_share = row["dram_compulsory_share"]->mean;
+    d.traced = row.samples.size();
+    d.spp = row.spp;
+    return d;
 }
 
 std::string compulsory_note(const std::string& gpus) {
@@ -101,8 +117,8 @@ std::string range_of(const Estimate& ratio) {
     return one_end(std::max(0.0, ratio.mean - half)) + " to " + one_end(ratio.mean + half);
 }
 
-std::string cause_text(const std::optional<Factors>& factors, Traffic traffic) {
-    const auto cause = factors ? main_cause(*factors, traffic) : std::nullopt;
+std::string cause_text(const std::optional<Factors>& factors, std::size_t level) {
+    const auto cause = factors ? main_cause(*factors, level) : std::nullopt;
     if (!cause) return {};
     return fmt::format(", most {}by {}, x{} ({})",
                        cause->factor.half_width && !is_certain(cause->factor) ? "perhaps " : "", cause->name,
@@ -149,9 +165,8 @@ Verdict verdict(const Difference& d) {
     for (const Bytes& b : bytes) {
         if (!is_certain(b.ratio)) continue;
         std::string part = change_of(b.ratio) + ' ' + b.name;
-        if (b.traffic == Traffic::dram && d.dram_compulsory_share >= mostly_compulsory)
-            part += " (compulsory misses of cold launches)";
-        if (!cause_named) part += cause_text(d.factors, b.traffic);
+        if (b.of_dram && d.dram_compulsory_share >= mostly_compulsory) part += " (compulsory misses of cold launches)";
+        if (!cause_named) part += cause_text(d.factors, b.level);
         cause_named = true;
         parts.push_back(part);
         if (!result.level) result.level = b.key;

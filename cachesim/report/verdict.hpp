@@ -8,17 +8,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
-#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/analysis/traffic_identity.hpp"
 #include "cachesim/report/report.hpp"
 
 namespace raycache::cachesim {
 
 /// Ratios of one strategy to its baseline.
 struct Difference {
-    std::optional<Estimate> speed_up;                        ///< predicted cycles of the baseline over the strategy's
-    std::optional<Estimate> l2_bytes, l3_bytes, dram_bytes;  ///< per ray, over the baseline's
+    std::optional<Estimate> speed_up;  ///< predicted cycles of the baseline over the strategy's
+    /// Bytes per ray over the baseline's, by level of cache: what it fetches from the one below, the last from DRAM.
+    std::vector<Estimate> bytes;
     std::optional<Factors> factors;
     double dram_compulsory_share = 0;  ///< of the strategy; see Row
     std::size_t traced = 0;            ///< sample indices
@@ -29,6 +32,13 @@ struct Verdict {
     std::string text;                  ///< no full stop at its end
     std::optional<std::string> level;  ///< the first certain one: "time", "l2_bytes", "l3_bytes", "dram_bytes"
 };
+
+/// Bytes per ray that a level of caches fetches from below, and their ratio to the baseline's.
+struct BytesFigures {
+    TrafficKey mean, ratio;
+};
+/// Of all levels of a GPU with so many: L2-to-L1, L3-to-L2 and DRAM bytes.
+std::span<const BytesFigures> bytes_figures(std::size_t levels);
 
 /// Of a row of a report; no predicted time.
 Difference difference_of(const Row&);
@@ -49,7 +59,8 @@ std::string change_of(const Estimate& ratio);
 /// "12.1 % fewer to 3.0 % more": the ends of its interval.
 std::string range_of(const Estimate& ratio);
 /// ", most by SIMT efficiency, x0.818 ±0.020 (fewer warp accesses per step: less divergence)"; nothing without a cause.
-std::string cause_text(const std::optional<Factors>&, Traffic);
+/// Of the traffic below level `level`, from 0.
+std::string cause_text(const std::optional<Factors>&, std::size_t level);
 /// "raise --trace-samples from 4 to about 20": what would make the surest of these ratios certain.
 std::string remedy(const Difference&);
 

@@ -71,10 +71,10 @@ TEST_CASE("a batch counts what its warps do, with caches that warps before it wa
     replay.push(chase({4, 0, 400}));
     Counters expected;
     expected.steps = expected.lane_accesses = expected.warp_accesses = 3;
-    expected.loads = expected.l1_requests = 12;
-    expected.sectors = 6;
-    expected.l1_hits = 4;
-    expected.l2_sectors = expected.dram_sectors = expected.dram_first_sectors = 2;
+    expected.loads = expected.requests = 12;
+    expected.levels[0].sectors = 6;
+    expected.levels[0].hits = 4;
+    expected.levels[1].sectors = expected.dram_sectors = expected.dram_first_sectors = 2;
     CHECK(replay.finish().all() == expected);
     REQUIRE(replay.batches().size() == 1);
     CHECK(replay.batches()[0].all() == expected);
@@ -89,8 +89,8 @@ TEST_CASE("warps of a batch and others that run at the same time are told apart"
         second ? replay.count_from_here() : replay.count_until_here();
         replay.push(chase({0, 100}));
         const Counters c = replay.finish().all();
-        CHECK(c.sectors == 4);
-        CHECK(c.l1_hits == (second ? 4 : 0));
+        CHECK(c.levels[0].sectors == 4);
+        CHECK(c.levels[0].hits == (second ? 4 : 0));
         CHECK(c.dram_sectors == (second ? 0 : 4));
     }
 }
@@ -107,9 +107,9 @@ TEST_CASE("a batch may span kernels, and one of no warp is none") {
     replay.push(chase({0}));
     replay.count_from_here();
     const Counters all = replay.finish().all();
-    CHECK(all.sectors == 4);
-    CHECK(all.l1_hits == 0);  // empty for the second kernel
-    CHECK(all.l2_hits == 2);
+    CHECK(all.levels[0].sectors == 4);
+    CHECK(all.levels[0].hits == 0);  // empty for the second kernel
+    CHECK(all.levels[1].hits == 2);
     REQUIRE(replay.batches().size() == 1);
     CHECK(replay.batches()[0].all() == all);
 }
@@ -148,12 +148,12 @@ TEST_CASE("an explanation holds what its replay counts and nothing else, with ca
     MissCounts l1, l2;
     for (const MissCounts& of : explainer.findings().levels[0].by_kind) l1 += of;
     for (const MissCounts& of : explainer.findings().levels[1].by_kind) l2 += of;
-    CHECK(c.sectors > 100);
-    CHECK(l1.lookups == c.sectors);
-    CHECK(l1.misses() == c.sectors - c.l1_hits);
-    CHECK(l2.lookups == c.l2_sectors);
+    CHECK(c.levels[0].sectors > 100);
+    CHECK(l1.lookups == c.levels[0].sectors);
+    CHECK(l1.misses() == c.levels[0].sectors - c.levels[0].hits);
+    CHECK(l2.lookups == c.levels[1].sectors);
     CHECK(l2.compulsory == c.dram_first_sectors);
     CHECK(explainer.findings().sharing.same_warp + explainer.findings().sharing.same_cta +
               explainer.findings().sharing.other_cta ==
-          c.l1_hits);
+          c.levels[0].hits);
 }

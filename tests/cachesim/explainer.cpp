@@ -113,18 +113,18 @@ TEST_CASE("the classes add up to the misses of the replay in every cut") {
     const Explained e = explain(gpu, launch);
     const Counters all = e.statistics.all();
     const LevelFindings &l1 = e.findings.levels[0], &l2 = e.findings.levels[1];
-    CHECK(l1.all().lookups == all.sectors);
-    CHECK(l1.all().misses() == all.l2_sectors);
-    CHECK(l2.all().lookups == all.l2_sectors);
+    CHECK(l1.all().lookups == all.levels[0].sectors);
+    CHECK(l1.all().misses() == all.levels[1].sectors);
+    CHECK(l2.all().lookups == all.levels[1].sectors);
     CHECK(l2.all().misses() == all.dram_sectors);
     CHECK(l2.all().compulsory == all.dram_first_sectors);
-    CHECK(e.findings.sharing.hits() == all.l1_hits);
+    CHECK(e.findings.sharing.hits() == all.levels[0].hits);
     CHECK(l1.all().conflict > 0);
     CHECK(l1.all().lucky_hits > 0);
     for (const RayGroup& group : e.statistics.groups) {
         const std::size_t index = static_cast<unsigned>(group.ray) * LevelFindings::bounces + group.bounce;
-        CHECK(l1.by_ray[index].lookups == group.all().sectors);
-        CHECK(l1.by_ray[index].misses() == group.all().l2_sectors);
+        CHECK(l1.by_ray[index].lookups == group.all().levels[0].sectors);
+        CHECK(l1.by_ray[index].misses() == group.all().levels[1].sectors);
         CHECK(l2.by_ray[index].misses() == group.all().dram_sectors);
     }
     for (unsigned kind = 0; kind < traces::object_kinds; ++kind) {
@@ -235,8 +235,8 @@ TEST_CASE("the pixels of a launch add up to its counts") {
         sum.accesses += p.accesses;
     }
     const Counters all = e.statistics.all();
-    CHECK(sum.l1_parts == all.sectors * PixelCosts::parts);
-    CHECK(sum.l2_parts == all.l2_sectors * PixelCosts::parts);
+    CHECK(sum.l1_parts == all.levels[0].sectors * PixelCosts::parts);
+    CHECK(sum.l2_parts == all.levels[1].sectors * PixelCosts::parts);
     CHECK(sum.dram_parts == all.dram_sectors * PixelCosts::parts);
     CHECK(sum.accesses == all.lane_accesses);
     PixelCosts twice;

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/analysis/traffic_identity.hpp"
 #include "cachesim/report/waterfall.hpp"
 #include "tests/cachesim/series.hpp"
 
@@ -53,27 +53,25 @@ Explanation explanation(const std::vector<Counters>& base, const std::vector<Cou
 }  // namespace
 
 TEST_CASE("the factors of two hand-made counts multiply to their ratio of DRAM bytes per ray") {
-    const auto f = traffic_factors({plain}, {better}, 2);
+    const auto f = traffic_factors({plain}, {better}, CacheUnits{});
     REQUIRE(f);
-    CHECK(f->work.mean == 1);
-    CHECK(f->simt_efficiency.mean == 0.5);
-    CHECK(f->coalescing.mean == 1);
-    CHECK(f->l1_locality.mean == 1);
-    CHECK(f->l2_locality.mean == 1.5);
+    std::vector<double> means;
+    for (const Estimate& term : f->terms) means.push_back(term.mean);
+    CHECK(means == std::vector<double>{1, 0.5, 1, 1, 1.5});
     CHECK(f->product() == 0.75);
-    CHECK_FALSE(traffic_factors({plain}, {counters(10, 0, 0, 0, 0, 0)}, 2));
+    CHECK_FALSE(traffic_factors({plain}, {counters(10, 0, 0, 0, 0, 0)}, CacheUnits{}));
 }
 
 TEST_CASE("an L3 has a factor of its own") {
     Counters base = plain, other = better;
-    base.l3_sectors = 160;
-    other.l3_sectors = 80;
-    const auto f = traffic_factors({base}, {other}, 3);
+    base.levels[2].sectors = 160;
+    other.levels[2].sectors = 80;
+    const auto f = traffic_factors({base}, {other}, CacheUnits{3, 32});
     REQUIRE(f);
-    CHECK(f->l2_locality.mean == 1);
-    CHECK(f->l3_locality.mean == 1.5);
+    CHECK(f->terms[4].mean == 1);
+    CHECK(f->terms[5].mean == 1.5);
     CHECK(f->product() == 0.75);
-    CHECK(factor_terms(3).size() == 6);
+    CHECK(identity_terms(3).size() == 6);
 }
 
 TEST_CASE("the sentence says how much at every level, why, and what is a matter of caches") {
@@ -103,7 +101,7 @@ TEST_CASE("the sentence says that there is no difference where there is none") {
           "There is no difference: clever reads as many bytes per ray as plain from every level.");
     CHECK_THAT(sentence(explanation({plain, better}, {plain, better})), StartsWith("There is no difference: "));
     Counters other = plain;
-    other.l2_sectors /= 2;
+    other.levels[1].sectors /= 2;
     CHECK_THAT(sentence(explanation({plain}, {other})),
                StartsWith("clever reads 50.0 % fewer") && Contains("as many DRAM bytes per ray (256.0 against 256.0)"));
     Counters base = plain;
@@ -117,11 +115,11 @@ TEST_CASE("the sentence says that there is no difference where there is none") {
 
 TEST_CASE("an explanation names both L1 hit rates, and compulsory misses where DRAM sees little else") {
     Counters base = plain, other = better;
-    base.l1_requests = 3200;
-    base.l1_hits = base.sectors - base.l2_sectors;
+    base.requests = 3200;
+    base.levels[0].hits = base.levels[0].sectors - base.levels[1].sectors;
     base.dram_first_sectors = 80;
-    other.l1_requests = 1600;
-    other.l1_hits = other.sectors - other.l2_sectors;
+    other.requests = 1600;
+    other.levels[0].hits = other.levels[0].sectors - other.levels[1].sectors;
     other.dram_first_sectors = 59;
     const Explanation e = explanation({base, base}, {other, other});
     const std::string text = to_text(e);

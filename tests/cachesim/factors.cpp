@@ -5,7 +5,7 @@
 #include <random>
 
 #include "cachesim/analysis/estimate.hpp"
-#include "cachesim/analysis/factor_terms.hpp"
+#include "cachesim/analysis/traffic_identity.hpp"
 #include "tests/cachesim/series.hpp"
 
 using namespace raycache::cachesim;
@@ -13,17 +13,16 @@ using raycache::cachesim::test::counters;
 
 namespace {
 
-Factors with_means(double work, double simt, double coalescing, double l1, double l2, double l3 = 1) {
+/// Miss rates of L1 and the levels below.
+Factors with_means(double work, double simt, double coalescing, const std::vector<double>& miss_rates) {
     Factors f;
-    f.work.mean = work;
-    f.simt_efficiency.mean = simt;
-    f.coalescing.mean = coalescing;
-    f.l1_locality.mean = l1;
-    f.l2_locality.mean = l2;
-    f.l3_locality.mean = l3;
+    for (const double mean : {work, simt, coalescing}) f.terms.push_back({mean, {}});
     f.equal_miss_rates.mean = work * simt * coalescing;
-    f.cache_locality.mean = l1 * l2 * l3;
-    f.l1_l2_locality.mean = l1 * l2;
+    double together = 1;
+    for (const double rate : miss_rates) {
+        f.terms.push_back({rate, {}});
+        f.locality.push_back({together *= rate, {}});
+    }
     return f;
 }
 
@@ -31,29 +30,28 @@ Factors with_means(double work, double simt, double coalescing, double l1, doubl
 
 TEST_CASE("the cause of fewer DRAM bytes is never a miss rate that another one outweighs") {
     // L1 misses less, L2 so much more that both together raise the traffic; fuller warps lower it after all.
-    const Factors f = with_means(1.0, 0.75, 0.95, 0.611, 2.044);
+    const Factors f = with_means(1.0, 0.75, 0.95, {0.611, 2.044});
     REQUIRE(f.product() < 1);
-    CHECK(main_cause(f, Traffic::dram)->name == "SIMT efficiency");
-    CHECK(main_cause(f, Traffic::l2_to_l1)->name == "L1 locality");
-    CHECK(main_cause(with_means(1, 0.95, 1, 0.6, 0.8), Traffic::dram)->name == "cache locality");
-    CHECK_FALSE(main_cause(Factors{}, Traffic::dram));
+    CHECK(main_cause(f, 1)->name == "SIMT efficiency");
+    CHECK(main_cause(f, 0)->name == "L1 locality");
+    CHECK(main_cause(with_means(1, 0.95, 1, {0.6, 0.8}), 1)->name == "cache locality");
+    CHECK_FALSE(main_cause(with_means(1, 1, 1, {1, 1}), 1));
 }
 
 TEST_CASE("the named cause points where the change points, and is the largest factor that does") {
     std::mt19937_64 random(5);
     std::lognormal_distribution<double> any(0, 0.4);
     for (int round = 0; round < 2000; ++round) {
-        const Factors f = with_means(any(random), any(random), any(random), any(random), any(random), any(random));
+        const Factors f = with_means(any(random), any(random), any(random), {any(random), any(random), any(random)});
         const double before = std::log(f.equal_miss_rates.mean);
-        for (const auto& [traffic, locality] : {std::pair{Traffic::l2_to_l1, f.l1_locality.mean},
-                                                {Traffic::l3_to_l2, f.l1_l2_locality.mean},
-                                                {Traffic::dram, f.cache_locality.mean}}) {
+        for (std::size_t level = 0; level < 3; ++level) {
+            const double locality = f.locality[level].mean;
             const double whole = before + std::log(locality);
-            const auto cause = main_cause(f, traffic);
+            const auto cause = main_cause(f, level);
             REQUIRE(cause);
             const double named = std::log(cause->factor.mean);
             REQUIRE((named < 0) == (whole < 0));
-            for (const double other : {f.work.mean, f.simt_efficiency.mean, f.coalescing.mean, locality})
+            for (const double other : {f.terms[0].mean, f.terms[1].mean, f.terms[2].mean, locality})
                 if ((std::log(other) < 0) == (whole < 0)) REQUIRE(std::fabs(std::log(other)) <= std::fabs(named));
         }
     }
@@ -64,13 +62,12 @@ TEST_CASE("joined factors are the products of the single ones") {
                                      counters(90, 4100, 850, 8500, 4300, 900)};
     const std::vector<Counters> other{counters(100, 3900, 600, 6500, 2500, 800),
                                       counters(95, 4000, 640, 6900, 2600, 700)};
-    const auto f = traffic_factors(base, other, 2);
+    const auto f = traffic_factors(base, other, CacheUnits{});
     REQUIRE(f);
-    CHECK(f->equal_miss_rates.mean ==
-          Approx(f->work.mean * f->simt_efficiency.mean * f->coalescing.mean).epsilon(1e-12));
-    CHECK(f->cache_locality.mean == Approx(f->l1_locality.mean * f->l2_locality.mean).epsilon(1e-12));
-    for (const Estimate& e : {f->work, f->l2_locality, f->equal_miss_rates, f->cache_locality}) CHECK(e.half_width);
-    CHECK_FALSE(traffic_factors({base[0]}, {other[0]}, 2)->work.half_width);
+    CHECK(f->equal_miss_rates.mean == Approx(f->terms[0].mean * f->terms[1].mean * f->terms[2].mean).epsilon(1e-12));
+    CHECK(f->cache_locality().mean == Approx(f->terms[3].mean * f->terms[4].mean).epsilon(1e-12));
+    for (const Estimate& e : {f->terms[0], f->terms[4], f->equal_miss_rates, f->cache_locality()}) CHECK(e.half_width);
+    CHECK_FALSE(traffic_factors({base[0]}, {other[0]}, CacheUnits{})->terms[0].half_width);
 }
 
 TEST_CASE("a product of powers of two ratios is the paired ratio, interval and all") {

@@ -37,7 +37,7 @@ Launch one_access(traces::ObjectKind kind) {
     return launch;
 }
 
-LaunchStatistics counts(const Launch& launch) {
+LaunchStatistics counted(const Launch& launch) {
     Replay replay(timed_gpu(), launch.regions, 0);
     for (const auto& warp : launch.warps) replay.push(warp);
     return replay.finish();
@@ -48,7 +48,7 @@ LaunchStatistics counts(const Launch& launch) {
 TEST_CASE("an access counts as a step, a read, a write or a stream as the row of its kind says") {
     for (const traces::ObjectKindRole& role : traces::object_kind_roles) {
         INFO(role.name);
-        const LaunchStatistics s = counts(one_access(role.kind));
+        const LaunchStatistics s = counted(one_access(role.kind));
         const Counters& c = s.groups.at(0).by_kind[static_cast<std::size_t>(role.kind)];
         CHECK(c.lane_accesses == 2);
         CHECK(c.steps == (role.is_step ? 2 : 0));
@@ -95,7 +95,7 @@ TEST_CASE("an explanation has a row for each kind that was looked up") {
         e.base.name = "plain";
         e.other.name = "clever";
         for (ExplainedTrace* side : {&e.base, &e.other}) {
-            side->launches = {counts(one_access(role.kind))};
+            side->launches = {counted(one_access(role.kind))};
             side->findings.levels.resize(2);
             side->findings.levels[0].by_kind[static_cast<std::size_t>(role.kind)].lookups = 2;
         }

@@ -130,8 +130,8 @@ private:
                 const bool shared = level + 1 == gpu_.levels.size();
                 const unsigned cache = shared ? 0 : level == 0 ? sm * gpu_.l1_per_sm + slot % gpu_.l1_per_sm : sm;
                 const auto answer = caches_[level][cache].look_up(line, asked);
-                (level == 0 ? c.sectors : level == 1 ? c.l2_sectors : c.l3_sectors) += asked.size();
-                (level == 0 ? c.l1_hits : level == 1 ? c.l2_hits : c.l3_hits) += asked.size() - answer.missing.size();
+                c.levels[level].sectors += asked.size();
+                c.levels[level].hits += asked.size() - answer.missing.size();
                 asked = answer.fetched;
             }
             c.dram_sectors += asked.size();
@@ -158,7 +158,7 @@ private:
                     requests.insert({lane / together, n});
                 ++element;
             }
-            c.l1_requests += requests.size();
+            c.requests += requests.size();
         }
     }
 

@@ -25,7 +25,7 @@ nlohmann::json metrics_of(const ProfilerReport& profile) {
 TEST_CASE("the counters of a profiler are as computed by hand") {
     Counters c = counters(100, 4000, 800, 8000, 4000, 1000);
     c.loads = 3200;
-    c.l1_requests = 16000;
+    c.requests = 16000;
     const std::string text = to_text(ProfilerReport{
         make_report({series("a", {{0, {RayGroup{traces::RayType::camera, 0, {c}, 100}}}})}, "", GroupBy::none)});
     for (const char* line :
@@ -51,9 +51,9 @@ TEST_CASE("stores and sorts of a wavefront are not counted as loads of a profile
     Counters loads = counters(0, 4000, 800, 8000, 4000, 1000), stores = counters(0, 640, 20, 400, 400, 150),
              sorts = counters(0, 320, 10, 700, 700, 700);
     loads.loads = 3200;
-    loads.l1_requests = 16000;
+    loads.requests = 16000;
     stores.loads = 80;
-    stores.l1_requests = 800;
+    stores.requests = 800;
     stores.written_sectors = 150;
     sorts.sort_sectors = 700;
     RayGroup group{traces::RayType::bounce, 1, {}, 100};
@@ -85,6 +85,6 @@ TEST_CASE("stores and sorts of a wavefront are not counted as loads of a profile
     }
     const auto by_object = make_report({wave}, "", GroupBy::object);
     REQUIRE(by_object.rows.size() == 3);
-    CHECK(by_object.rows[1].stores.l2_sectors == 400);
-    CHECK(by_object.rows[1].loads.l2_sectors + by_object.rows[2].loads.l2_sectors == 0);
+    CHECK(by_object.rows[1].stores.levels[1].sectors == 400);
+    CHECK(by_object.rows[1].loads.levels[1].sectors + by_object.rows[2].loads.levels[1].sectors == 0);
 }

@@ -56,12 +56,12 @@ TEST_CASE("a tiny launch counts as computed by hand") {
     Counters expected;
     expected.steps = expected.lane_accesses = 6;
     expected.warp_accesses = 5;
-    expected.loads = 5 * 4;        // of 16 B
-    expected.l1_requests = 6 * 4;  // no two lanes share a sector
-    expected.sectors = 12;
-    expected.l1_hits = 2;
-    expected.l2_sectors = 10;
-    expected.l2_hits = 4;
+    expected.loads = 5 * 4;     // of 16 B
+    expected.requests = 6 * 4;  // no two lanes share a sector
+    expected.levels[0].sectors = 12;
+    expected.levels[0].hits = 2;
+    expected.levels[1].sectors = 10;
+    expected.levels[1].hits = 4;
     expected.dram_sectors = 6;
     expected.dram_first_sectors = 6;
     CHECK(s.groups[0].by_kind[0] == expected);
@@ -74,24 +74,24 @@ TEST_CASE("warps of an SM take turns") {
     Gpu gpu = one_warp_at_a_time();
     gpu.warps_per_sm = gpu.warps_per_cta = 2;
     gpu.levels[0].sets = gpu.levels[0].ways = 1;
-    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 0);
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().levels[0].hits == 0);
     gpu.warps_per_sm = gpu.warps_per_cta = 1;
-    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().l1_hits == 4);
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}}), warp({{2}, {2}})}}).all().levels[0].hits == 4);
 }
 
 TEST_CASE("warp slots are dealt out among the L1s of an SM") {
     Gpu gpu = one_warp_at_a_time();
     gpu.warps_per_sm = gpu.warps_per_cta = 2;
-    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().l1_hits == 2);
+    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().levels[0].hits == 2);
     gpu.l1_per_sm = 2;
-    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().l1_hits == 0);
+    CHECK(replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all().levels[0].hits == 0);
 }
 
 TEST_CASE("a later CTA goes to the SM that frees first") {
     // CTA 0 (SM 0) is long, CTA 1 (SM 1) short; CTA 2 reads what CTA 1 read, and hits in the L1 of SM 1.
     Gpu gpu = one_warp_at_a_time();
     gpu.sms = 2;
-    CHECK(replay(gpu, {nodes, {warp({{0}, {0}, {0}}), warp({{8}}), warp({{8}})}}).all().l1_hits == 4 + 2);
+    CHECK(replay(gpu, {nodes, {warp({{0}, {0}, {0}}), warp({{8}}), warp({{8}})}}).all().levels[0].hits == 4 + 2);
 }
 
 TEST_CASE("a launch of nothing counts nothing") {
@@ -102,13 +102,13 @@ TEST_CASE("a launch of nothing counts nothing") {
 TEST_CASE("hits and misses add up, and what one level misses the next is asked for") {
     const Launch launch = random_launch(nodes, 60, 40, 11);
     const Counters c = replay(small_gpu(), launch).all();
-    CHECK(c.sectors == c.l1_hits + c.l2_sectors);
-    CHECK(c.l2_sectors == c.l2_hits + c.dram_sectors);
+    CHECK(c.levels[0].sectors == c.levels[0].hits + c.levels[1].sectors);
+    CHECK(c.levels[1].sectors == c.levels[1].hits + c.dram_sectors);
     CHECK(c.dram_sectors > 0);
     CHECK(c.dram_first_sectors > 0);
     CHECK(c.dram_first_sectors <= c.dram_sectors);
-    CHECK(c.l1_hits > 0);
-    CHECK(c.l2_hits > 0);
+    CHECK(c.levels[0].hits > 0);
+    CHECK(c.levels[1].hits > 0);
 }
 
 TEST_CASE("permuting lanes changes nothing while a warp access touches one line") {
@@ -131,20 +131,20 @@ TEST_CASE("a level that fills 64 bytes reads the neighbour of a missing sector f
     Gpu gpu = one_warp_at_a_time();
     gpu.levels[1].fill_bytes = 64;
     Counters c = replay(gpu, launch).all();
-    CHECK(c.l1_hits == 1);
-    CHECK(c.l2_sectors == 3);
-    CHECK(c.l2_hits == 1);       // sector 1 came with sector 0
-    CHECK(c.dram_sectors == 4);  // 0 and 1, 2 and 3
+    CHECK(c.levels[0].hits == 1);
+    CHECK(c.levels[1].sectors == 3);
+    CHECK(c.levels[1].hits == 1);  // sector 1 came with sector 0
+    CHECK(c.dram_sectors == 4);    // 0 and 1, 2 and 3
     gpu.levels[0].fill_bytes = 64;
     c = replay(gpu, launch).all();
-    CHECK(c.l1_hits == 2);
-    CHECK(c.l2_sectors == 4);
-    CHECK(c.l2_hits == 0);
+    CHECK(c.levels[0].hits == 2);
+    CHECK(c.levels[1].sectors == 4);
+    CHECK(c.levels[1].hits == 0);
     CHECK(c.dram_sectors == 4);
     gpu.levels[1].fill_bytes = 128;
     c = replay(gpu, launch).all();
-    CHECK(c.l2_sectors == 4);
-    CHECK(c.l2_hits == 2);
+    CHECK(c.levels[1].sectors == 4);
+    CHECK(c.levels[1].hits == 2);
     CHECK(c.dram_sectors == 4);
 }
 
@@ -154,12 +154,12 @@ TEST_CASE("the middle one of three levels belongs to its SM") {
     gpu.sms = 2;
     gpu.levels.push_back(gpu.levels[1]);
     const Counters c = replay(gpu, {nodes, {warp({{0}}), warp({{0}})}}).all();
-    CHECK(c.sectors == 4);
-    CHECK(c.l1_hits == 0);
-    CHECK(c.l2_sectors == 4);
-    CHECK(c.l2_hits == 0);
-    CHECK(c.l3_sectors == 4);
-    CHECK(c.l3_hits == 2);
+    CHECK(c.levels[0].sectors == 4);
+    CHECK(c.levels[0].hits == 0);
+    CHECK(c.levels[1].sectors == 4);
+    CHECK(c.levels[1].hits == 0);
+    CHECK(c.levels[2].sectors == 4);
+    CHECK(c.levels[2].hits == 2);
     CHECK(c.dram_sectors == 2);
 }
 
@@ -173,14 +173,14 @@ TEST_CASE("a machine of 8 lanes runs a record as the vectors that have active la
     CHECK(c.warp_accesses == 2);
     CHECK(c.lane_accesses == 3);
     CHECK(c.loads == 2 * 4);
-    CHECK(c.sectors == 4 + 2);
-    CHECK(c.l1_hits == 2);
+    CHECK(c.levels[0].sectors == 4 + 2);
+    CHECK(c.levels[0].hits == 2);
     // A warp's vectors take a turn each: with one line of L1 and another warp in between, nothing is found again.
     gpu.warps_per_sm = gpu.warps_per_cta = 2;
     gpu.levels[0].sets = gpu.levels[0].ways = 1;
     auto other = std::make_shared<traces::WarpTrace>(*w);
     other->elements = {8, 9, 8};
-    CHECK(replay(gpu, {nodes, {w, other}}).all().l1_hits == 0);
+    CHECK(replay(gpu, {nodes, {w, other}}).all().levels[0].hits == 0);
     gpu.simd_width = 32;
     CHECK(replay(gpu, {nodes, {w, other}}).all().warp_accesses == 2);
 }
@@ -236,13 +236,13 @@ TEST_CASE("a GPU that breaks a rule is refused before anything is allocated") {
 
 TEST_CASE("counters add beyond 2^32") {
     Counters a;
-    a.sectors = 0xffffffffu;
+    a.levels[0].sectors = 0xffffffffu;
     a.dram_sectors = std::uint64_t{1} << 40;
     RayGroup group;
     group.by_kind = {a, a, a};
     group.rays = std::uint64_t{1} << 33;
     LaunchStatistics launch{0, {group, group}};
-    CHECK(launch.all().sectors == 6 * 0xffffffffull);
+    CHECK(launch.all().levels[0].sectors == 6 * 0xffffffffull);
     CHECK(launch.all().dram_sectors == 6 * (std::uint64_t{1} << 40));
     CHECK(launch.all().rays == std::uint64_t{1} << 34);
 }

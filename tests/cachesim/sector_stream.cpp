@@ -116,8 +116,8 @@ TEST_CASE("the sectors exported of every L1 give the replay's L1 hits in a cache
             CHECK(told == here);
         }
     }
-    CHECK(asked == expected.sectors);
-    CHECK(found == expected.l1_hits);
+    CHECK(asked == expected.levels[0].sectors);
+    CHECK(found == expected.levels[0].hits);
     CHECK(found > 0);
     CHECK(found < asked);
 }
@@ -130,9 +130,9 @@ TEST_CASE("the sectors exported of L2 give the replay's L2 hits in a cache writt
     const Exported exported = export_launch(gpu, launch, {1, 0, {}}, "u64");
     CHECK(exported.counts == expected);
     const auto sectors = addresses(exported.bytes);
-    CHECK(sectors.size() == expected.l2_sectors);
-    CHECK(hits(gpu.levels[1], sectors) == expected.l2_hits);
-    CHECK(expected.l2_hits > 0);
+    CHECK(sectors.size() == expected.levels[1].sectors);
+    CHECK(hits(gpu.levels[1], sectors) == expected.levels[1].hits);
+    CHECK(expected.levels[1].hits > 0);
     CHECK(expected.dram_sectors > 0);
 }
 

@@ -16,12 +16,12 @@ inline Counters counters(std::uint64_t rays, std::uint64_t steps, std::uint64_t 
     c.rays = rays;
     c.steps = c.lane_accesses = steps;
     c.warp_accesses = accesses;
-    c.sectors = sectors;
-    c.l1_requests = 2 * sectors;  // each sector is asked for by two loads
-    c.l2_sectors = l2;
-    c.l1_hits = sectors - l2;
+    c.levels[0].sectors = sectors;
+    c.requests = 2 * sectors;  // each sector is asked for by two loads
+    c.levels[1].sectors = l2;
+    c.levels[0].hits = sectors - l2;
     c.dram_sectors = dram;
-    c.l2_hits = l2 - dram;
+    c.levels[1].hits = l2 - dram;
     return c;
 }
 
@@ -33,8 +33,8 @@ inline LaunchStatistics launch(std::uint32_t sample, Counters c) {
     camera.by_kind[0] = c;
     shadow.ray = traces::RayType::shadow;
     shadow.rays = camera.rays / 2;
-    shadow.by_kind[1] =
-        counters(0, c.steps / 2, c.warp_accesses / 2, c.sectors / 2, c.l2_sectors / 2, c.dram_sectors / 2);
+    shadow.by_kind[1] = counters(0, c.steps / 2, c.warp_accesses / 2, c.levels[0].sectors / 2, c.levels[1].sectors / 2,
+                                 c.dram_sectors / 2);
     return {sample, {camera, shadow}};
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("SMs on threads of their own miss and count what they do one after the
     CHECK(one.lines == four.lines);
     CHECK(one.sectors == four.sectors);
     REQUIRE(one.groups.size() == 4);
-    CHECK(one.groups[0].by_kind[0].l1_hits > 100);
+    CHECK(one.groups[0].by_kind[0].levels[0].hits > 100);
     CHECK(one.lines[0].size() > 100);
     CHECK(one.lines[0] != one.lines[1]);
 }

@@ -122,14 +122,14 @@ TEST_CASE("one warp alone hits what it hits without time, under every policy, ov
             const Counters counts = replay(gpu, single).all();
             const TimedStatistics t = timed(gpu, single);
             CAPTURE(policy, three);
-            CHECK(counts.sectors > 1000);
-            CHECK(t.l1.requests() == counts.sectors);
-            CHECK(t.l1.misses() == counts.l2_sectors);
+            CHECK(counts.levels[0].sectors > 1000);
+            CHECK(t.l1.requests() == counts.levels[0].sectors);
+            CHECK(t.l1.misses() == counts.levels[1].sectors);
             CHECK(t.l1.merges == 0);
-            if (three) CHECK(t.l2.misses() == counts.l3_sectors);
+            if (three) CHECK(t.l2.misses() == counts.levels[2].sectors);
             CHECK((three ? t.l3 : t.l2).misses() == counts.dram_sectors);
             CHECK(t.dram_sectors == counts.dram_sectors);
-            CHECK(counts.dram_sectors < counts.l2_sectors);
+            CHECK(counts.dram_sectors < counts.levels[1].sectors);
         }
     }
 }
@@ -146,7 +146,7 @@ TEST_CASE("sectors smaller than half a load, and vectors of few lanes, are asked
             const Launch launch = mixed_launch(sector + width);
             const TimedStatistics t = timed(gpu, launch);
             CAPTURE(sector, width);
-            CHECK(t.l1.requests() == replay(gpu, launch).all().sectors);
+            CHECK(t.l1.requests() == replay(gpu, launch).all().levels[0].sectors);
             CHECK(t.lane_accesses == launch.lane_accesses());
             CHECK(t.l2.requests() == t.l1.misses());
         }

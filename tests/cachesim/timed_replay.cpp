@@ -110,8 +110,9 @@ TEST_CASE("without latency a timed replay hits what the functional one hits") {
         const TimedStatistics t = timed(gpu, launch, ideal);
         const Counters counts = replay(gpu, launch).all();
         CAPTURE(seed);
-        CHECK(t.l1.requests() == counts.sectors);
-        CHECK(static_cast<double>(t.l1.misses()) == Approx(static_cast<double>(counts.l2_sectors)).epsilon(0.01));
+        CHECK(t.l1.requests() == counts.levels[0].sectors);
+        CHECK(static_cast<double>(t.l1.misses()) ==
+              Approx(static_cast<double>(counts.levels[1].sectors)).epsilon(0.01));
         CHECK(static_cast<double>(t.dram_sectors) == Approx(static_cast<double>(counts.dram_sectors)).epsilon(0.01));
     }
 }

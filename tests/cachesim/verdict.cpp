@@ -14,13 +14,10 @@ Estimate estimate(double mean, double half_width) { return {mean, half_width}; }
 /// L2-to-L1 bytes, DRAM bytes; half of the L2-to-L1 ratio is L1's.
 Difference difference(const Estimate& l2, const Estimate& dram) {
     Difference d;
-    d.l2_bytes = l2;
-    d.dram_bytes = dram;
+    d.bytes = {l2, dram};
     d.traced = 4;
     d.spp = 64;
-    d.factors = Factors{};
-    d.factors->l1_locality = l2;
-    d.factors->cache_locality = dram;
+    d.factors = Factors{std::vector<Estimate>(5, {1, {}}), {1, {}}, {l2, dram}};
     return d;
 }
 
@@ -58,8 +55,8 @@ TEST_CASE("DRAM bytes lead where they alone are certain, and compulsory ones are
 
 TEST_CASE("an L3 is a level of its own") {
     Difference d = difference(estimate(0.97, 0.06), estimate(0.99, 0.05));
-    d.l3_bytes = estimate(1.3, 0.1);
-    d.factors->l1_l2_locality = *d.l3_bytes;
+    d.bytes.insert(d.bytes.begin() + 1, estimate(1.3, 0.1));
+    d.factors->locality.insert(d.factors->locality.begin() + 1, d.bytes[1]);
     CHECK(verdict(d).level == "l3_bytes");
     CHECK_THAT(verdict(d).text, StartsWith("30.0 ±10.0 % more L3-to-L2 bytes/ray, most by cache locality"));
 }
@@ -90,8 +87,8 @@ TEST_CASE("one sample index proves nothing but is reported") {
 TEST_CASE("equal counts are no difference, and a cause that is not certain is only perhaps one") {
     CHECK(verdict(difference({1, 0}, {1, 0})).text == "no difference in bytes/ray");
     Difference d = difference(estimate(0.8, 0.1), estimate(1, 0.1));
-    d.factors->l1_locality = estimate(0.9, 0.2);
-    d.factors->simt_efficiency = estimate(0.95, 0.01);
+    d.factors->locality[0] = estimate(0.9, 0.2);
+    d.factors->terms[1] = estimate(0.95, 0.01);
     CHECK_THAT(verdict(d).text, Contains("most perhaps by L1 locality, x0.900 ±0.200"));
     CHECK(verdict(Difference{}).text == "nothing to compare: no traffic");
 }

@@ -72,18 +72,20 @@ TEST_CASE("writes and sorts count as computed by hand") {
     // Line 0 is written in L2, not in L1; read from there; written again before it was evicted.
     const auto c = counts(tiny_gpu(), {{{put, {0}}, {get, {0}}, {put, {0}}, {sort_region, {5, 6}}}});
     Counters reads;
-    reads.lane_accesses = reads.warp_accesses = reads.sectors = reads.l2_sectors = reads.l2_hits = 1;
-    reads.loads = reads.l1_requests = 2;  // of 16 B
+    reads.lane_accesses = reads.warp_accesses = reads.levels[0].sectors = reads.levels[1].sectors =
+        reads.levels[1].hits = 1;
+    reads.loads = reads.requests = 2;  // of 16 B
     CHECK(of(c, ObjectKind::ray_state) == reads);
     Counters writes;
-    writes.lane_accesses = writes.warp_accesses = writes.sectors = writes.l2_sectors = 2;
-    writes.loads = writes.l1_requests = 4;
-    writes.l2_hits = writes.dram_sectors = writes.written_sectors = 1;
+    writes.lane_accesses = writes.warp_accesses = writes.levels[0].sectors = writes.levels[1].sectors = 2;
+    writes.loads = writes.requests = 4;
+    writes.levels[1].hits = writes.dram_sectors = writes.written_sectors = 1;
     CHECK(of(c, ObjectKind::ray_state_write) == writes);
     Counters sorts;
     sorts.lane_accesses = 2;
     sorts.warp_accesses = 1;
-    sorts.l1_requests = sorts.sectors = sorts.l2_sectors = sorts.dram_sectors = sorts.sort_sectors = 7;  // 216 B
+    sorts.requests = sorts.levels[0].sectors = sorts.levels[1].sectors = sorts.dram_sectors = sorts.sort_sectors =
+        7;  // 216 B
     CHECK(of(c, ObjectKind::sort) == sorts);
 }
 
@@ -101,13 +103,13 @@ TEST_CASE("a sector that is changed, evicted and read comes from DRAM") {
 
 TEST_CASE("a kernel finds nothing in L1 and everything in L2; the caches of a CPU keep what they have") {
     const auto same = counts(tiny_gpu(), {{{get, {0}}, {get, {0}}}});
-    CHECK(of(same, ObjectKind::ray_state).l1_hits == 1);
+    CHECK(of(same, ObjectKind::ray_state).levels[0].hits == 1);
     const auto next = counts(tiny_gpu(), {{{get, {0}}}, {{get, {0}}}});
-    CHECK(of(next, ObjectKind::ray_state).l1_hits == 0);
-    CHECK(of(next, ObjectKind::ray_state).l2_hits == 1);
+    CHECK(of(next, ObjectKind::ray_state).levels[0].hits == 0);
+    CHECK(of(next, ObjectKind::ray_state).levels[1].hits == 1);
     Gpu cpu = tiny_gpu();
     cpu.levels.push_back(cpu.levels[1]);
-    CHECK(of(counts(cpu, {{{get, {0}}}, {{get, {0}}}}), ObjectKind::ray_state).l1_hits == 1);
+    CHECK(of(counts(cpu, {{{get, {0}}}, {{get, {0}}}}), ObjectKind::ray_state).levels[0].hits == 1);
 }
 
 TEST_CASE("kernels of many warps count what they count alone, but for what L2 keeps") {
@@ -123,9 +125,9 @@ TEST_CASE("kernels of many warps count what they count alone, but for what L2 ke
     }
     const Counters both = twice.finish().all();
     CHECK(both.rays == 2 * alone.rays);
-    CHECK(both.sectors == 2 * alone.sectors);
-    CHECK(both.l1_hits == 2 * alone.l1_hits);
-    CHECK(both.l2_sectors == 2 * alone.l2_sectors);
+    CHECK(both.levels[0].sectors == 2 * alone.levels[0].sectors);
+    CHECK(both.levels[0].hits == 2 * alone.levels[0].hits);
+    CHECK(both.levels[1].sectors == 2 * alone.levels[1].sectors);
     CHECK(both.dram_sectors == alone.dram_sectors);
 }
 
@@ -244,9 +246,9 @@ TEST_CASE(
             CAPTURE(cpu, fill);
             CHECK(times.dram_sectors == counts.dram_sectors);
             if (fill > 32) continue;
-            CHECK(times.l2.requests() == counts.l2_sectors);
-            if (cpu) CHECK(times.l3.requests() == counts.l3_sectors);
-            CHECK(times.l1.misses() == counts.l2_sectors);
+            CHECK(times.l2.requests() == counts.levels[1].sectors);
+            if (cpu) CHECK(times.l3.requests() == counts.levels[2].sectors);
+            CHECK(times.l1.misses() == counts.levels[1].sectors);
         }
     }
 }

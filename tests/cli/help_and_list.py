@@ -5,7 +5,7 @@ import re
 from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "export", "import", "list"]
-TOPICS = ["strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes"]
+TOPICS = ["strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes", "figures", "timed-figures"]
 
 
 class HelpAndList(ProgramTest):
@@ -44,7 +44,7 @@ class HelpAndList(ProgramTest):
         for topic, entries in listed.items():
             self.assertGreater(len(entries), 0, topic)
             for entry in entries:
-                self.assertRegex(entry["name"], r"\A[a-z0-9-]+\Z")
+                self.assertRegex(entry["name"], r"\A[a-z0-9_-]+\Z")
                 self.assertGreater(len(entry["description"]), 10, entry)
                 self.assertIn(f"  {entry['name']}", text)
             one = self.succeeds("list", topic.replace("_", "-"), "--json").report

@@ -159,8 +159,8 @@ TEST_CASE("A damaged or foreign text is no result") {
     };
     CHECK(refusal(text).empty());
     CHECK_THAT(refusal(text.substr(0, text.size() / 2)), Contains("expected JSON"));
-    CHECK_THAT(refusal(with("\"l1_hits\"", "\"l1_hats\"")), Contains("did you mean 'l1_hits'?"));
-    CHECK_THAT(refusal(with("\"spp\":4,\"sector_bytes\":32,", "")), Contains(".spp\" is missing"));
+    CHECK_THAT(refusal(with("\"steps\"", "\"stops\"")), Contains("did you mean 'steps'?"));
+    CHECK_THAT(refusal(with("\"spp\":4,\"caches\"", "\"caches\"")), Contains(".spp\" is missing"));
     CHECK_THAT(refusal(with("\"ray\":\"camera\"", "\"ray\":\"lens\"")), Contains("expected one of: camera"));
     CHECK_THAT(refusal(with("raycache ", "raycat ")), Contains("run the job again"));
     CHECK_THAT(refusal(with("\"levels\":2", "\"levels\":7")), Contains("2 or 3 cache levels"));

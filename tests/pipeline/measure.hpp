@@ -72,7 +72,7 @@ inline std::vector<Traffic> measure(const tracer::PreparedScene& scene, const tr
     tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(traffic.size()), [&](std::uint32_t launch) {
         const cachesim::Counters counts = replay_launch(capture, launch, gpu).all();
         const auto rays = static_cast<double>(counts.rays);
-        traffic[launch] = {32.0 * static_cast<double>(counts.l2_sectors) / rays,
+        traffic[launch] = {32.0 * static_cast<double>(counts.levels[1].sectors) / rays,
                            32.0 * static_cast<double>(counts.dram_sectors) / rays};
     });
     return traffic;

@@ -11,7 +11,7 @@
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
-#include "cachesim/report/pairing.hpp"
+#include "cachesim/report/origin.hpp"
 #include "tools/jobs/heat_map.hpp"
 #include "traces/error.hpp"
 #include "traces/printable.hpp"

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cachesim/report/format.hpp"
 #include "cachesim/report/table.hpp"
 
 namespace raycache::tools {
 namespace {
 
-std::string decimals(double value, int digits) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
+using cachesim::decimals;
+
 std::string digits(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 
 tracer::Measured times(tracer::Measured m, double factor) {

@@ -22,6 +22,15 @@ double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Head
     return share / static_cast<double>(gpus.size());
 }
 
+/// What a series of this source and GPU is of.
+cachesim::Origin origin_of(const LaunchSource& source, const cachesim::Gpu& gpu) {
+    const traces::Provenance& p = source.header->provenance;
+    return {p.scene,      to_string(source.strategy),
+            p.sequence,   p.parameters,
+            p.thread_map, gpu.name,
+            p.spp,        {gpu.levels.size(), gpu.l1().sector_bytes}};
+}
+
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
 std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
@@ -31,19 +40,10 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
     std::uint64_t warps = 0;
     for (std::size_t s = 0; s < sources.size(); ++s) {
         const traces::Header& header = *sources[s].header;
-        const traces::Provenance& p = header.provenance;
         for (const cachesim::Gpu& gpu : gpus) {
             Series& made = series.emplace_back();
-            made.scene = p.scene;
-            made.strategy = to_string(sources[s].strategy);
-            made.sequence = p.sequence;
-            made.parameters = p.parameters;
-            made.thread_map = p.thread_map;
-            made.gpu = gpu.name;
-            made.sector_bytes = gpu.l1().sector_bytes;
-            if constexpr (requires { made.levels; }) made.levels = gpu.levels.size();
+            static_cast<cachesim::Origin&>(made) = origin_of(sources[s], gpu);
             if constexpr (requires { made.no_time; }) made.no_time = cachesim::no_time_note(gpu);
-            made.spp = p.spp;
             made.launches.resize(header.launches.size());
         }
         for (std::uint32_t launch = 0; launch < header.launches.size(); ++launch) tasks.emplace_back(s, launch);
@@ -136,15 +136,8 @@ Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<ca
                                     std::uint32_t sample) { return BothReplays(gpu, regions, sample); })) {
         cachesim::Series& counted = all.traffic.emplace_back(both);
         cachesim::TimedSeries& timed = all.times.emplace_back();
-        timed.scene = both.scene;
-        timed.strategy = both.strategy;
-        timed.sequence = both.sequence;
-        timed.parameters = both.parameters;
-        timed.thread_map = both.thread_map;
-        timed.gpu = both.gpu;
-        timed.spp = both.spp;
+        static_cast<cachesim::Origin&>(timed) = both;
         timed.no_time = both.no_time;
-        timed.sector_bytes = both.sector_bytes;
         for (auto& [counts, times] : both.launches) {
             counted.launches.push_back(std::move(counts));
             timed.launches.push_back(times);

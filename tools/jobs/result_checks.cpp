@@ -19,7 +19,7 @@ public:
 
     void operator()(const ReplayResult& r) const {
         for (const cachesim::Series& s : r.series) {
-            expect(s.levels == 2 || s.levels == 3, "series of 2 or 3 cache levels");
+            expect(s.caches.levels == 2 || s.caches.levels == 3, "series of 2 or 3 cache levels");
             expect(!s.launches.empty(), "launches in every series");
         }
         expect(r.times.empty() || r.times.size() == r.series.size(), "as many timed series as counted ones");

@@ -30,6 +30,12 @@ struct Fields<RenderResult> {
 // Counts of a functional replay.
 
 template <>
+struct Fields<cachesim::LevelCounts> {
+    using S = cachesim::LevelCounts;
+    static constexpr std::tuple all{Field{"sectors", &S::sectors}, Field{"hits", &S::hits}};
+};
+
+template <>
 struct Fields<cachesim::Counters> {
     using S = cachesim::Counters;
     static constexpr std::tuple all{Field{"rays", &S::rays},
@@ -37,13 +43,8 @@ struct Fields<cachesim::Counters> {
                                     Field{"lane_accesses", &S::lane_accesses},
                                     Field{"warp_accesses", &S::warp_accesses},
                                     Field{"loads", &S::loads},
-                                    Field{"l1_requests", &S::l1_requests},
-                                    Field{"sectors", &S::sectors},
-                                    Field{"l1_hits", &S::l1_hits},
-                                    Field{"l2_sectors", &S::l2_sectors},
-                                    Field{"l2_hits", &S::l2_hits},
-                                    Field{"l3_sectors", &S::l3_sectors},
-                                    Field{"l3_hits", &S::l3_hits},
+                                    Field{"requests", &S::requests},
+                                    Field{"levels", &S::levels},
                                     Field{"dram_sectors", &S::dram_sectors},
                                     Field{"written_sectors", &S::written_sectors},
                                     Field{"sort_sectors", &S::sort_sectors},
@@ -71,8 +72,14 @@ struct Fields<cachesim::LaunchStatistics> {
 };
 
 template <>
-struct Fields<cachesim::Series> {
-    using S = cachesim::Series;
+struct Fields<cachesim::CacheUnits> {
+    using S = cachesim::CacheUnits;
+    static constexpr std::tuple all{Field{"levels", &S::levels}, Field{"sector_bytes", &S::sector_bytes}};
+};
+
+template <>
+struct Fields<cachesim::Origin> {
+    using S = cachesim::Origin;
     static constexpr std::tuple all{Field{"scene", &S::scene},
                                     Field{"strategy", &S::strategy},
                                     Field{"sequence", &S::sequence},
@@ -80,9 +87,13 @@ struct Fields<cachesim::Series> {
                                     Field{"thread_map", &S::thread_map},
                                     Field{"gpu", &S::gpu},
                                     Field{"spp", &S::spp},
-                                    Field{"sector_bytes", &S::sector_bytes},
-                                    Field{"levels", &S::levels},
-                                    Field{"launches", &S::launches}};
+                                    Field{"caches", &S::caches}};
+};
+
+template <>
+struct Fields<cachesim::Series> {
+    static constexpr std::tuple all =
+        std::tuple_cat(Fields<cachesim::Origin>::all, std::tuple{Field{"launches", &cachesim::Series::launches}});
 };
 
 // A replay in time.
@@ -135,16 +146,8 @@ struct Fields<cachesim::TimedStatistics> {
 template <>
 struct Fields<cachesim::TimedSeries> {
     using S = cachesim::TimedSeries;
-    static constexpr std::tuple all{Field{"scene", &S::scene},
-                                    Field{"strategy", &S::strategy},
-                                    Field{"sequence", &S::sequence},
-                                    Field{"parameters", &S::parameters},
-                                    Field{"thread_map", &S::thread_map},
-                                    Field{"gpu", &S::gpu},
-                                    Field{"spp", &S::spp},
-                                    Field{"sector_bytes", &S::sector_bytes},
-                                    Field{"no_time", &S::no_time},
-                                    Field{"launches", &S::launches}};
+    static constexpr std::tuple all = std::tuple_cat(
+        Fields<cachesim::Origin>::all, std::tuple{Field{"no_time", &S::no_time}, Field{"launches", &S::launches}});
 };
 
 template <>

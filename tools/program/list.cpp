@@ -5,7 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/report/figures/timed_figures.hpp"
+#include "cachesim/report/figures/traffic_figures.hpp"
 #include "cachesim/report/json_key.hpp"
+#include "cachesim/report/json_parts.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/gpu_details.hpp"
@@ -27,6 +30,7 @@ namespace {
 
 struct Entry {
     std::string name, description;
+    nlohmann::ordered_json more{};  ///< beside these, in JSON
 };
 struct Topic {
     std::string name;
@@ -41,6 +45,23 @@ std::vector<Entry> entries_of(const List& list) {
     return entries;
 }
 
+/// "l1_hits / l1_requests", "…, over the baseline's"; nothing for a count.
+template <class Figure>
+std::string formula(const Figure& figure) {
+    if (figure.of == cachesim::Of::total || !figure.denominator) return {};
+    return fmt::format(" [{} / {}{}{}]", figure.numerator.name, figure.denominator->name,
+                       figure.per ? fmt::format(" x {}", figure.per->name) : "",
+                       figure.is_compared() ? ", over the baseline's" : "");
+}
+
+template <class List>
+std::vector<Entry> figures_of(const List& list) {
+    std::vector<Entry> entries;
+    for (const auto& figure : list)
+        entries.push_back({figure.key, figure.definition + formula(figure), cachesim::figure_json(figure, nullptr)});
+    return entries;
+}
+
 std::vector<Topic> all_topics() {
     return {{"strategies", entries_of(tracer::decorrelations())},
             {"sequences", entries_of(tracer::sequences())},
@@ -49,7 +70,9 @@ std::vector<Topic> all_topics() {
             {"integrators", entries_of(tracer::integrators())},
             {"thread-maps", entries_of(tracer::thread_maps())},
             {"orders", entries_of(tracer::ray_orders())},
-            {"scenes", entries_of(tracer::builtin_scenes())}};
+            {"scenes", entries_of(tracer::builtin_scenes())},
+            {"figures", figures_of(cachesim::traffic_figures)},
+            {"timed-figures", figures_of(cachesim::timed_figures)}};
 }
 
 struct Options {
@@ -85,8 +108,9 @@ void run(const Options& o) {
         for (const Entry& e : topic.entries) {
             text += cachesim::break_lines(fmt::format("  {:<{}}  {}\n", e.name, width, e.description),
                                           o.width.columns(), width + 4);
-            json["topics"][cachesim::snake_case(topic.name)].push_back(
-                {{"name", e.name}, {"description", e.description}});
+            nlohmann::ordered_json entry{{"name", e.name}, {"description", e.description}};
+            if (!e.more.is_null()) entry.update(e.more);
+            json["topics"][cachesim::snake_case(topic.name)].push_back(std::move(entry));
         }
     }
     print(o.json ? o.json.document(json_text(json)) : text);
@@ -96,13 +120,16 @@ void run(const Options& o) {
 
 void add_list(Program& program) {
     auto o = std::make_shared<Options>();
-    Command* command = program.add_subcommand(
-        "list", "List strategies, sequences, GPUs, layouts, integrators, thread maps, ray orders, built-in scenes");
+    Command* command = program.add_subcommand("list",
+                                              "List strategies, sequences, GPUs, layouts, integrators, thread maps, "
+                                              "ray orders, built-in scenes, figures of reports");
     std::vector<std::string> topics;
     for (const Topic& topic : all_topics()) topics.push_back(topic.name);
     command
-        ->add_option("TOPIC", o->topic,
-                     "strategies, sequences, gpus, layouts, integrators, thread-maps, orders or scenes; default: all")
+        ->add_option(
+            "TOPIC", o->topic,
+            "strategies, sequences, gpus, layouts, integrators, thread-maps, orders, scenes, figures or timed-figures; "
+            "default: all")
         ->choices("topic", topics);
     o->json.add(*command);
     o->width.add(*command);

@@ -1,0 +1,66 @@
+// What the numbers of a series or a row are of, and which of them may be compared.
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "cachesim/analysis/counts.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::cachesim {
+
+struct Origin {
+    std::string scene, strategy, sequence, parameters, thread_map, gpu;
+    std::uint64_t spp = 0;  ///< N
+    CacheUnits caches;      ///< of the GPU
+};
+
+/// Whether launches made with these thread maps (Provenance::thread_map) hold the same pixels and sample indices, so
+/// that launch by launch they can be paired: "tile" and "classes:M" both trace one sample index of every pixel and
+/// differ only in which pixels share a warp, which is part of the strategy.
+inline bool same_work_per_launch(std::string_view a, std::string_view b) {
+    const auto one_sample = [](std::string_view map) { return map == "tile" || map.starts_with("classes"); };
+    return a == b || (one_sample(a) && one_sample(b));
+}
+
+/// Whether they differ in what a strategy is made of, and in nothing else.
+inline bool comparable(const Origin& a, const Origin& b) {
+    const auto key = [](const Origin& o) { return std::tie(o.scene, o.sequence, o.spp, o.gpu); };
+    return key(a) == key(b) && same_work_per_launch(a.thread_map, b.thread_map);
+}
+
+/// What `of` is compared with: the first of its baseline's, of its own thread map where there is one; null where there
+/// is none. `same_part(other)`: whether both are of the same part of their launches.
+template <class Item, class SamePart>
+const Item* find_baseline(const std::vector<Item>& all, const Origin& of, const std::string& baseline,
+                          const SamePart& same_part) {
+    const auto find = [&](bool same_map) -> const Item* {
+        for (const Item& item : all)
+            if (item.strategy == baseline && comparable(item, of) && same_part(item) &&
+                (!same_map || item.thread_map == of.thread_map))
+                return &item;
+        return nullptr;
+    };
+    const Item* const same_map = find(true);
+    return same_map ? same_map : find(false);
+}
+
+/// Throws UsageError if `baseline` was given by the user but is the strategy of none.
+template <class Item>
+void check_baseline(const std::vector<Item>& all, const std::string& baseline) {
+    std::set<std::string> names;
+    for (const Item& item : all) names.insert(item.strategy);
+    if (baseline.empty() || names.contains(baseline)) return;
+    throw UsageError(
+        fmt::format("baseline: expected one of the strategies {}, found \"{}\"", fmt::join(names, ", "), baseline));
+}
+
+}  // namespace raycache::cachesim
