@@ -33,7 +33,7 @@ struct Region {
 /// How the trace was made, in the words of the command line. Free of anything that does not change the records
 /// (thread count, output name, time of day), so equal inputs give equal bytes.
 struct Provenance {
-    std::string program;           ///< "raycache 0.1.0"
+    std::string program;           ///< "raycache 0.2.0"
     std::string command;           ///< every option that shapes the records, spelled out
     std::string scene;             ///< file name without folder, or the built-in scene's name and detail
     std::uint64_t scene_hash = 0;  ///< XXH3-64 of the scene's content

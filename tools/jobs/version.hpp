@@ -3,6 +3,6 @@
 
 namespace raycache::tools {
 
-inline constexpr const char* program_name = "raycache " RAYCACHE_VERSION;  ///< "raycache 0.1.0"
+inline constexpr const char* program_name = "raycache " RAYCACHE_VERSION;  ///< "raycache 0.2.0"
 
 }  // namespace raycache::tools
