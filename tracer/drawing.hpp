@@ -38,7 +38,7 @@ public:
 /// White. Throws Error where the module or the font cannot be found.
 std::unique_ptr<Drawing> make_drawing(int width, int height);
 
-/// Of one line, in pixels. Throws likewise.
+/// Size of one line of text, in pixels. Throws Error as make_drawing() does.
 int text_width(const std::string&, int pixels_high);
 
 /// Throws Error where make_drawing() would: call it before work that ends in a picture.

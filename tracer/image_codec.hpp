@@ -41,7 +41,7 @@ public:
 /// Loads the module at the first call. Throws Error where it cannot.
 const ImageCodec& image_codec();
 
-/// A function of the module, likewise: what stands behind drawing.hpp is asked for so.
+/// A function of the module by its name; drawing.hpp is built on it.
 void* image_module_symbol(const char* name);
 
 }  // namespace raycache::tracer

@@ -58,8 +58,8 @@ struct Header {
     std::vector<Region> regions;          ///< 1 … 254
     std::vector<std::uint32_t> launches;  ///< first sample index of each launch
     std::uint32_t warps_per_launch = 0;
-    /// A launch is so many kernels one after the other, of equally many warps each: a kernel begins when the one before
-    /// has ended, and finds what that wrote. Divides warps_per_launch.
+    /// Kernels of a launch, one after the other, each with the same number of warps: a kernel begins when its
+    /// predecessor has ended, and sees what that wrote. Divides warps_per_launch.
     std::uint32_t kernels_per_launch = 1;
 
     std::uint32_t warps_per_kernel() const { return warps_per_launch / kernels_per_launch; }

@@ -24,8 +24,7 @@ void bound(const Origin& origin, const std::string& what, std::uint64_t value, s
 /// The rules of header.hpp that need no link table. `at` is the offset of the region's entry.
 void check_region(const Region& region, unsigned index, std::uint32_t version, const Origin& at) {
     const auto what = [&](const char* field) { return fmt::format("{} of region {}", field, index); };
-    bound(at, what("kind"), static_cast<unsigned>(region.kind), 0,
-          object_kinds_of(version) - 1);
+    bound(at, what("kind"), static_cast<unsigned>(region.kind), 0, object_kinds_of(version) - 1);
     bound(at + 1, what("degree"), region.degree, 0, format::max_degree);
     bound(at + 4, what("element size"), region.element_size, 1, format::max_element_size);
     bound(at + 8, what("base address"), region.base, 0, format::max_address);

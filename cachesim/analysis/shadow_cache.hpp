@@ -16,8 +16,8 @@ namespace raycache::cachesim {
 /// sectors that were asked for (or filled) since it became present.
 class ShadowCache {
 public:
-    /// `lines`: how many the cache holds, at least 1. `fill_sectors`: a power of two; a miss fetches all sectors of the
-    /// aligned group of so many that the missing sector lies in.
+    /// `lines`: how many the cache holds, at least 1. `fill_sectors`: a power of two; a miss fetches the aligned
+    /// group of this many sectors that holds the missing one.
     explicit ShadowCache(std::uint64_t lines, unsigned fill_sectors = 1)
         : lines_(lines), fill_sectors_(fill_sectors), table_(64) {}
 

@@ -46,8 +46,8 @@ struct Timing {
     std::uint32_t leaf_instructions = 0;     ///< more, of a visit where lanes begin a leaf (timed/leaf_starts.hpp)
     std::uint32_t shading_instructions = 0;  ///< before lanes of a warp begin a ray: shading of the hit, set-up
     std::uint32_t instruction_latency = 4;
-    std::uint32_t instruction_interval = 1;  ///< cycles from one of them to the next of the same scheduler
-    std::uint32_t dependent_chains = 4;      ///< instructions of a visit that may be under way at once
+    std::uint32_t instruction_interval = 1;  ///< cycles between instructions issued by one scheduler
+    std::uint32_t dependent_chains = 4;      ///< instructions of a visit in flight at once
 
     /// Visits of a warp that may be under way at once. Traversal needs what one visit brings for the next: 1.
     std::uint32_t accesses_in_flight = 1;

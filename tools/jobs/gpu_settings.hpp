@@ -13,7 +13,7 @@ namespace raycache::tools {
 struct GpuSettings {
     std::vector<std::string> names;             ///< presets, or files
     std::vector<std::string> changes;           ///< "KEY=VALUE,VALUE": a GPU of each value (gpu_variants.hpp)
-    std::vector<std::uint64_t> l1_kib, l2_kib;  ///< L1, L2 of so many KiB: a GPU of each
+    std::vector<std::uint64_t> l1_kib, l2_kib;  ///< capacities of L1 and L2 in KiB: one GPU per value
     std::uint32_t warps_per_sm = 0;             ///< 0: as the GPU's file says
 
     /// One of every name and combination of listed changes, which stand in its name. Throws as load_gpu() does, and

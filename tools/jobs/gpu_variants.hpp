@@ -17,7 +17,7 @@ inline constexpr std::size_t max_gpu_variants = 256;
 std::vector<std::string> listed_changes(const std::string& assignment);
 
 /// The variants of one preset or file: every combination of one change of each list, the last list changing fastest.
-/// Changes are those of load_gpu(), and "l1.size=BYTES" (l2, l3): a cache of so many bytes, without a carve-out. Its
+/// Changes are those of load_gpu(), and "l1.size=BYTES" (l2, l3): the capacity of a cache, without a carve-out. Its
 /// lines, slices and sets stay and its ways change; where that gives no whole number, or ways are changed as well, its
 /// ways stay and its sets change. Throws UsageError where neither is whole, naming the nearest sizes, and for more than
 /// max_gpu_variants combinations; else as load_gpu() does. Changes stand in the name: "rtx-3070 (l1=64 KiB)".

@@ -66,7 +66,7 @@ struct QualityRow {
 struct QualityPictures {
     tracer::Image reference;
     std::vector<tracer::Image> rows;           ///< of each row's first seed
-    std::vector<tracer::Image> at_equal_time;  ///< likewise; none unless asked for
+    std::vector<tracer::Image> at_equal_time;  ///< by row, at equal predicted time; empty unless asked for
 };
 
 /// Throws UsageError for settings out of range, before anything is rendered: call it before the scene is loaded.

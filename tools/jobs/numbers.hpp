@@ -23,11 +23,11 @@ std::string describe(const RealRange&);
 /// or a number out of range. `expected`: what the message says instead of the range.
 std::uint64_t read_whole(const std::string& word, const std::string& what, const WholeRange&,
                          const std::string& expected = {});
-/// Decimal with an optional '-', fraction and exponent: "-1.5e3". Throws likewise; "inf" and "nan" are no numbers.
+/// Decimal with an optional '-', fraction and exponent: "-1.5e3". Throws as read_whole() does; "inf" and "nan" are no numbers.
 double read_real(const std::string& word, const std::string& what, const RealRange&, const std::string& expected = {});
 
 /// Bytes: a whole number, alone or with a unit right behind it: B, KiB, MiB, GiB (powers of 1024), in letters of either
-/// case. At least 1. Throws likewise.
+/// case. At least 1. Throws as read_whole() does.
 std::uint64_t read_size(const std::string& word, const std::string& what);
 
 }  // namespace raycache::tools

@@ -27,7 +27,7 @@ public:
     /// That stage runs from now on; one at a time. `total` in units of work, 0 where none is counted; `unit` names what
     /// the rate counts, such as "rays".
     virtual void begin(const std::string& /*stage*/, std::uint64_t /*total*/, const std::string& /*unit*/) {}
-    /// So much more of the stage is done, which are so many units of what the rate counts.
+    /// Progress within the stage: work done since the last call, and the units of it that the rate counts.
     virtual void advance(std::uint64_t /*work*/, std::uint64_t /*units*/) {}
     /// The stage is over.
     virtual void end() {}

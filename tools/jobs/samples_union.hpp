@@ -33,7 +33,7 @@ struct SampleUnion {
 
 inline constexpr std::uint64_t max_union_points = std::uint64_t{1} << 22;
 
-/// Pixels 0 … copies-1 of a square picture that holds so many. Throws UsageError for no copy, for more than
+/// Pixels 0 … copies-1 of the smallest square picture that holds them. Throws UsageError for no copy, for more than
 /// `max_union_points` points, for a dimension that the sequence lacks, and as SamplingStrategy does.
 SampleUnion make_sample_union(tracer::StrategySettings, std::uint32_t first_dimension, std::uint32_t second_dimension,
                               std::uint64_t copies);

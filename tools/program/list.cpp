@@ -63,16 +63,12 @@ std::vector<Entry> figures_of(const List& list) {
 }
 
 std::vector<Topic> all_topics() {
-    return {{"strategies", entries_of(tracer::decorrelations())},
-            {"sequences", entries_of(tracer::sequences())},
-            {"gpus", entries_of(cachesim::gpu_presets())},
-            {"layouts", entries_of(tracer::bvh_layouts())},
-            {"integrators", entries_of(tracer::integrators())},
-            {"thread-maps", entries_of(tracer::thread_maps())},
-            {"orders", entries_of(tracer::ray_orders())},
-            {"scenes", entries_of(tracer::builtin_scenes())},
-            {"figures", figures_of(cachesim::traffic_figures)},
-            {"timed-figures", figures_of(cachesim::timed_figures)}};
+    return {
+        {"strategies", entries_of(tracer::decorrelations())}, {"sequences", entries_of(tracer::sequences())},
+        {"gpus", entries_of(cachesim::gpu_presets())},        {"layouts", entries_of(tracer::bvh_layouts())},
+        {"integrators", entries_of(tracer::integrators())},   {"thread-maps", entries_of(tracer::thread_maps())},
+        {"orders", entries_of(tracer::ray_orders())},         {"scenes", entries_of(tracer::builtin_scenes())},
+        {"figures", figures_of(cachesim::traffic_figures)},   {"timed-figures", figures_of(cachesim::timed_figures)}};
 }
 
 struct Options {

@@ -26,7 +26,7 @@ struct PathSettings {
     std::uint32_t bounces = 3;  ///< bounce rays of a path, 0 … 64
     /// Paths end early at random from the third vertex on, by throughput. Off for comparisons: it breaks lock step.
     bool russian_roulette = false;
-    /// Of the bounces at most so many may be reflections, and so many transmissions: crossing a surface, or staying
+    /// Limits on the bounces that are reflections, and on those that are transmissions: crossing a surface, or staying
     /// inside a solid. A path ends where the kind it draws is used up.
     std::uint32_t bounces_diffuse = max_bounces, bounces_transmission = max_bounces;
     LightSampling lights = LightSampling::automatic;

@@ -4,9 +4,8 @@
 // neighbours in dispatch order are neighbours in the picture.
 //   tile     a warp = the 32 pixels of one tile, one sample index. A launch is one sample index of every pixel.
 //   samples  a warp = one pixel, 32 consecutive sample indices. A launch is 32 sample indices of every pixel.
-//   classes  pixels fall into m x m classes (x mod m, y mod m). The pixels of a class, a picture of its own, are walked
-//   as
-//            `tile` walks the whole; class (0,0) first, then (1,0), … so that each is a coherent pass, one behind the
+//   classes  pixels fall into m x m classes (x mod m, y mod m). The pixels of a class, a picture of its own, are
+//            walked as `tile` walks the whole; class (0,0) first, then (1,0), … so that each is a coherent pass, one behind the
 //            other in the launch. A launch is one sample index of every pixel. m need not divide the picture's size:
 //            classes towards the right and the bottom then have a column or row less, and a few lanes or warps idle.
 #pragma once

@@ -29,7 +29,7 @@ struct WavefrontBuffers {
     std::uint32_t queue_entry(std::uint32_t vertex, std::uint32_t place) const { return vertex % 2 * slots + place; }
 };
 
-/// Appends the regions of a wavefront of so many slots to those of the scene.
+/// Appends the regions of a wavefront with `slots` path slots to those of the scene.
 WavefrontBuffers add_wavefront_buffers(std::vector<traces::Region>&, std::uint32_t slots, const SortCost&);
 
 }  // namespace raycache::tracer

@@ -72,9 +72,10 @@ struct LaneStep {
 ///   node()                 the element of the node where it stands
 ///   visit_node(view)       tests the node's boxes and goes on: to the nearest child that is hit, or back to a sibling
 ///                          left on its way here
-///   take_triangle()        the element of the next triangle where it stands; more_triangles(): whether there is
-///   another leave_triangles()      all are tested: back to a sibling left on its way here end()                  goes
-///   no further
+///   take_triangle()        the element of the next triangle where it stands
+///   more_triangles()       whether there is another
+///   leave_triangles()      all are tested: back to a sibling left on its way here
+///   end()                  goes no further
 template <class T>
 concept WalkableBvh = std::derived_from<T, BvhLayout> &&
     requires(const T& tree, const typename T::View& view, typename T::Lane& lane, const Ray& ray,
