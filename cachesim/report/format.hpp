@@ -17,7 +17,7 @@ std::string figure(double value, int small = 3);
 
 /// "1334 ±201": the mean with about four digits, and the half width to the same place.
 std::string with_interval(const std::optional<Estimate>&);
-/// "0.861 ±0.073": both with so many decimals.
+/// "0.861 ±0.073": both with that number of decimals.
 std::string with_interval(const std::optional<Estimate>&, int digits);
 /// " ±0.073", or nothing where there is no interval.
 std::string half_width_text(const Estimate&, int digits);
@@ -28,6 +28,7 @@ std::string half_width_cell(const Estimate&, int digits);
 template <class Figure>
 std::string figure_cell(const Figure& figure, const std::optional<Estimate>& value) {
     if (!value) return "-";
+    if (!figure.interval && figure.digits == about_four_digits) return cachesim::figure(figure.scale * value->mean);
     if (!figure.interval) return decimals(figure.scale * value->mean, figure.digits);
     return figure.digits == about_four_digits ? with_interval(value) : with_interval(value, figure.digits);
 }

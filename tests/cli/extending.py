@@ -67,13 +67,14 @@ class Copy:
         objects, jobs = {}, []
         for block in output_of(["ninja", "-t", "deps"]).split("\n\n"):
             name, *files = block.strip().split("\n")
-            files = [file.strip() for file in files]
+            files = [os.path.normpath(BUILD / file.strip()) for file in files]  # ccache makes them relative
             if not files or not changed.intersection(files) or files[0] not in commands:
                 continue
             name = name.split(":")[0]
             if name in program or re.match(r"CMakeFiles/raycache_(traces|tracer|cachesim|jobs)\.dir/", name):
                 objects[name] = self.root / f"object{len(objects)}.o"
                 jobs.append((commands[files[0]], files[0], objects[name]))
+        assert objects, "no object depends on what was changed"
         for name in self._new:
             if name.endswith(".cpp"):
                 sibling = next(file for file in commands if pathlib.Path(file).parent == (support.ROOT / name).parent)

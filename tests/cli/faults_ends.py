@@ -40,9 +40,14 @@ class Ends(ProgramTest):
         """The files under their final names, and what they hold."""
         return {name: f.read_bytes() for name, f in self.files().items() if not name.endswith(".partial")}
 
-    def wait_for_partial(self, process, known=()):
-        deadline = time.monotonic() + 120
-        while process.poll() is None and time.monotonic() < deadline and set(self.partials()) <= set(known):
+    def wait_for_partial(self, process, known=(), lasting=0.0):
+        """`lasting`: for how many seconds it must have been there, longer than the try whether the output can be written."""
+        deadline, since = time.monotonic() + 120, {}
+        while process.poll() is None and time.monotonic() < deadline:
+            now = time.monotonic()
+            since = {name: since.get(name, now) for name in set(self.partials()) - set(known)}
+            if any(now - first >= lasting for first in since.values()):
+                return
             time.sleep(0.0005)
 
 
@@ -123,7 +128,7 @@ class TwoWriters(Ends):
 class Interrupted(Ends):
     def interrupt(self, number, command, ready):
         process = self.start(command)
-        self.wait_for_partial(process) if ready is None else ready(process)
+        self.wait_for_partial(process, lasting=0.3) if ready is None else ready(process)
         process.send_signal(number)
         stdout, stderr = process.communicate(timeout=60)
         self.assertEqual(process.returncode, -number, stderr)

@@ -71,6 +71,9 @@ std::vector<Topic> all_topics() {
         {"figures", figures_of(cachesim::traffic_figures)},   {"timed-figures", figures_of(cachesim::timed_figures)}};
 }
 
+/// Entries of a topic that `raycache list` shows without being asked for it; of more it says how many there are.
+constexpr std::size_t most_of_all_topics = 30;
+
 struct Options {
     std::string topic;
     JsonOption json;
@@ -101,9 +104,12 @@ void run(const Options& o) {
         std::size_t width = 0;
         for (const Entry& e : topic.entries) width = std::max(width, e.name.size());
         text += (text.empty() ? "" : "\n") + topic.name + "\n";
+        const bool is_shown = !o.topic.empty() || topic.entries.size() <= most_of_all_topics;
+        if (!is_shown) text += fmt::format("  {} of them: raycache list {}\n", topic.entries.size(), topic.name);
         for (const Entry& e : topic.entries) {
-            text += cachesim::break_lines(fmt::format("  {:<{}}  {}\n", e.name, width, e.description),
-                                          o.width.columns(), width + 4);
+            if (is_shown)
+                text += cachesim::break_lines(fmt::format("  {:<{}}  {}\n", e.name, width, e.description),
+                                              o.width.columns(), width + 4);
             nlohmann::ordered_json entry{{"name", e.name}, {"description", e.description}};
             if (!e.more.is_null()) entry.update(e.more);
             json["topics"][cachesim::snake_case(topic.name)].push_back(std::move(entry));
