@@ -85,7 +85,8 @@ class Copy:
             words = shlex.split(command)
             words[words.index("-o") + 1] = str(target)
             words[words.index("-c") + 1] = str(other[0]) if other else source.replace(str(support.ROOT), str(self.root))
-            words = [f"-I{self.root}" if word == f"-I{support.ROOT}" else word for word in words]
+            instead = {f"-I{support.ROOT}": f"-I{self.root}", "-O3": "-O0", "-O1": "-O0"}  # to compile fast
+            words = [instead.get(word, word) for word in words]
             running.append(subprocess.Popen(words, cwd=BUILD))
             if len(running) >= (os.cpu_count() or 1):
                 assert running.pop(0).wait() == 0, source
