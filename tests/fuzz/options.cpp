@@ -31,8 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (takes_long(words)) return 0;
     fuzz::accepts([&] {
-        const tools::Job job = tools::Program().parse(words);
-        fuzz::require(job != nullptr, "what reads well can be run");
+        const tools::Action action = tools::Program().parse(words);
+        fuzz::require(action != nullptr, "what reads well can be run");
     });
     return 0;
 }

@@ -83,7 +83,8 @@ public:
     }
     int text_width(const std::string& line, int pixels_high) const override {
         const ROI roi = Algo::text_size(line, pixels_high, font);
-        return roi.defined() ? roi.width() : line.empty() ? 0 : -1;
+        if (!roi.defined()) return line.empty() ? 0 : -1;
+        return roi.xend > roi.xbegin ? roi.width() : 0;  // blanks alone: a region inside out
     }
 };
 
