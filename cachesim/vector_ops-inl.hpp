@@ -34,8 +34,10 @@ HWY_INLINE void store(std::uint32_t* to, Vector what) { hn::StoreU(what, words_t
 HWY_INLINE Vector places() { return hn::Iota(words_tag, 0); }
 /// The lanes below `count`.
 HWY_INLINE Mask lowest(unsigned count) { return hn::FirstN(words_tag, count); }
+/// Lane i of the result is lane order[i] modulo the number of lanes.
 HWY_INLINE Vector permuted(Vector what, Vector order) {
-    return hn::TableLookupLanes(what, hn::IndicesFromVec(words_tag, order));
+    const Vector within = hn::And(order, all(lanes_of_vector - 1));  // Highway takes no others
+    return hn::TableLookupLanes(what, hn::IndicesFromVec(words_tag, within));
 }
 
 /// As many bits as lanes, or more.
