@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 
 # The documentation keeps the folders of the sources, so that its links lead somewhere.
 set(raycache_doc ${CMAKE_INSTALL_DATAROOTDIR}/doc/raycache)
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${raycache_doc})
+install(FILES README.md CONTRIBUTING.md CHANGELOG.md LICENSE DESTINATION ${raycache_doc})
 install(DIRECTORY docs DESTINATION ${raycache_doc})
 install(FILES cachesim/MODEL.md DESTINATION ${raycache_doc}/cachesim)
 install(FILES traces/FORMAT.md DESTINATION ${raycache_doc}/traces)
