@@ -89,7 +89,7 @@ std::string sentence(const std::vector<SpeedUp>& all) {
     // lane accesses per ray, and warp accesses per lane access
     const double work = per_ray(real, real.base.lane_accesses, real.other.lane_accesses);
     const double divergence = per_ray(real, real.base.warp_accesses, real.other.warp_accesses) / work;
-    const double to_l2 = per_ray(real, real.base.l1.misses(), real.other.l1.misses());
+    const double to_l2 = per_ray(real, real.base.levels[0].misses(), real.other.levels[0].misses());
     const auto times = [](const Estimate& e) { return fmt::format("{:.2f}x{}", e.mean, half_width_text(e, 2)); };
     std::string text = times(predicted);
     if (predicted.half_width && std::fabs(predicted.mean - 1) <= *predicted.half_width)

@@ -26,7 +26,8 @@ Json row_json(const TimedReport& report, std::size_t n) {
     out.update({{"spp", row.spp}, {"samples", row.samples()}});
     for (std::size_t i = 0; i < timed_figures.size(); ++i) {
         const TimedFigure& figure = timed_figures[i];
-        if (!figure.in_json() || (figure.presence == Presence::three_levels && !row.totals.l3.requests())) continue;
+        if (!figure.in_json() || (figure.presence == Presence::three_levels && !row.totals.levels[2].requests()))
+            continue;
         (figure.object ? out[figure.object] : out)[figure.name] = figure_of(row, i);
         if (i != TimedKey("dram_sectors").index) continue;
         out["bottleneck"] = text_in_time(row, row.waits_most() ? "latency" : row.busiest);

@@ -107,7 +107,8 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
 std::vector<std::uint32_t> TimedRow::samples() const { return samples_of(*this); }
 
 bool TimedReport::has_l3() const {
-    return std::any_of(rows.begin(), rows.end(), [](const TimedRow& row) { return row.totals.l3.requests() > 0; });
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const TimedRow& row) { return row.totals.levels[2].requests() > 0; });
 }
 
 std::optional<Verdict> verdict_of(const TimedReport& report, std::size_t row) {

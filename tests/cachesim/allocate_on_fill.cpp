@@ -25,14 +25,14 @@ TEST_CASE("on fill, a line can be read until the one that replaces it is there")
     // Both warps read line 0, there at 500. Then warp 0 reads line 1, there at 1000, while warp 1 reads line 0 on.
     const Launch launch = launch_of({chase({0, elements_per_line}), chase({0, 0, 0, 0, 0})});
     const auto on_fill = timed_with(gpu, Allocate::on_fill, Allocate::on_miss, launch);
-    CHECK(on_fill.l1.line_misses == 2);
-    CHECK(on_fill.l1.merges == 1);
-    CHECK(on_fill.l1.hits == 4);
+    CHECK(on_fill.levels[0].line_misses == 2);
+    CHECK(on_fill.levels[0].merges == 1);
+    CHECK(on_fill.levels[0].hits == 4);
 
     // On miss line 1 takes the place of line 0 at once: warp 1 waits for a line to be free and misses again.
     const auto on_miss = timed_with(gpu, Allocate::on_miss, Allocate::on_miss, launch);
-    CHECK(on_miss.l1.line_misses == 3);
-    CHECK(on_miss.l1.hits == 3);
+    CHECK(on_miss.levels[0].line_misses == 3);
+    CHECK(on_miss.levels[0].hits == 3);
     CHECK(on_miss.cycles > on_fill.cycles);
 }
 
@@ -47,10 +47,10 @@ TEST_CASE("on fill, the L2 keeps a line until the one that replaces it is there"
     const Launch launch = launch_of({chase({0, elements_per_line}), chase({0, 0, 2})});
     const auto on_fill = timed_with(gpu, Allocate::on_miss, Allocate::on_fill, launch);
     const auto on_miss = timed_with(gpu, Allocate::on_miss, Allocate::on_miss, launch);
-    CHECK(on_fill.l2.line_misses == 2);
-    CHECK(on_fill.l2.sector_misses == 1);
-    CHECK(on_miss.l2.line_misses == 3);
-    CHECK(on_miss.l2.sector_misses == 0);
+    CHECK(on_fill.levels[1].line_misses == 2);
+    CHECK(on_fill.levels[1].sector_misses == 1);
+    CHECK(on_miss.levels[1].line_misses == 3);
+    CHECK(on_miss.levels[1].sector_misses == 0);
 }
 
 TEST_CASE("in caches that hold everything it makes no difference when a line is taken") {
@@ -64,8 +64,8 @@ TEST_CASE("in caches that hold everything it makes no difference when a line is 
         for (const Allocate l2 : {Allocate::on_miss, Allocate::on_fill}) {
             const auto other = timed_with(gpu, l1, l2, launch);
             CHECK(other.cycles == on_miss.cycles);
-            CHECK(other.l1.hits == on_miss.l1.hits);
-            CHECK(other.l1.merges == on_miss.l1.merges);
+            CHECK(other.levels[0].hits == on_miss.levels[0].hits);
+            CHECK(other.levels[0].merges == on_miss.levels[0].merges);
             CHECK(other.dram_sectors == on_miss.dram_sectors);
         }
     }
@@ -79,9 +79,9 @@ TEST_CASE("caches that allocate on fill lose nothing, however few lines, registe
             const Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 300)}, 12, 20, ways);
             const auto t = timed_with(gpu, Allocate::on_fill, Allocate::on_fill, launch);
             CHECK(t.lane_accesses == launch.lane_accesses());
-            CHECK(t.l2.requests() == t.l1.misses());
-            CHECK(t.dram_sectors >= t.l2.misses());
-            if (fill == 32) CHECK(t.dram_sectors == t.l2.misses());
+            CHECK(t.levels[1].requests() == t.levels[0].misses());
+            CHECK(t.dram_sectors >= t.levels[1].misses());
+            if (fill == 32) CHECK(t.dram_sectors == t.levels[1].misses());
         }
     }
 }
@@ -99,7 +99,8 @@ TEST_CASE("without latency a cache that allocates on fill hits what one that all
     ideal.infinite_bandwidth = true;
     const auto on_miss = timed_with(gpu, Allocate::on_miss, Allocate::on_miss, launch, ideal);
     const auto on_fill = timed_with(gpu, Allocate::on_fill, Allocate::on_fill, launch, ideal);
-    CHECK(on_fill.l1.requests() == on_miss.l1.requests());
-    CHECK(static_cast<double>(on_fill.l1.misses()) == Approx(static_cast<double>(on_miss.l1.misses())).epsilon(0.01));
+    CHECK(on_fill.levels[0].requests() == on_miss.levels[0].requests());
+    CHECK(static_cast<double>(on_fill.levels[0].misses()) ==
+          Approx(static_cast<double>(on_miss.levels[0].misses())).epsilon(0.01));
     CHECK(static_cast<double>(on_fill.dram_sectors) == Approx(static_cast<double>(on_miss.dram_sectors)).epsilon(0.01));
 }

@@ -52,9 +52,9 @@ using Cycles = std::vector<Cycle>;
 
 void check_same(const TimedStatistics& a, const TimedStatistics& b) {
     CHECK(a.cycles == b.cycles);
-    CHECK(a.l1 == b.l1);
-    CHECK(a.l2 == b.l2);
-    CHECK(a.l3 == b.l3);
+    CHECK(a.levels[0] == b.levels[0]);
+    CHECK(a.levels[1] == b.levels[1]);
+    CHECK(a.levels[2] == b.levels[2]);
     CHECK(a.dram_sectors == b.dram_sectors);
     CHECK(a.visit_cycles == b.visit_cycles);
     CHECK(a.warp_cycles == b.warp_cycles);
@@ -191,8 +191,8 @@ TEST_CASE("the fast path of a port gives what its rule gives") {
             CAPTURE(c.name, seed);
             const TimedStatistics fast = timed(gpu, launch);
             check_same(fast, timed(gpu, launch, {}, PortPath::rule));
-            CHECK(fast.l1.hits > 500);
-            CHECK(fast.l1.misses() > 500);
+            CHECK(fast.levels[0].hits > 500);
+            CHECK(fast.levels[0].misses() > 500);
             Idealised unlimited, perfect;
             unlimited.infinite_bandwidth = perfect.perfect_l1 = true;
             for (const Idealised& ideal : {unlimited, perfect})

@@ -17,7 +17,7 @@ TimedStatistics times(std::uint64_t cycles, std::uint64_t warp_accesses, std::ui
     t.rays = 100;
     t.lane_accesses = 3000;
     t.warp_accesses = warp_accesses;
-    t.l1.line_misses = l1_misses;
+    t.levels[0].line_misses = l1_misses;
     t.dram_sectors = l1_misses / 2;
     t.warp_slots = 10;
     t.warp_cycles = cycles * 8;

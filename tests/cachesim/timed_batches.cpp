@@ -29,8 +29,8 @@ void check_same_counts(const TimedStatistics& a, const TimedStatistics& b) {
     CHECK(a.rays == b.rays);
     CHECK(a.loads == b.loads);
     CHECK(a.instructions == b.instructions);
-    CHECK(a.l1 == b.l1);
-    CHECK(a.l2 == b.l2);
+    CHECK(a.levels[0] == b.levels[0]);
+    CHECK(a.levels[1] == b.levels[1]);
     CHECK(a.dram_sectors == b.dram_sectors);
     CHECK(a.visit_cycles == b.visit_cycles);
     CHECK(a.warps == b.warps);
@@ -84,7 +84,7 @@ TEST_CASE("a batch after a warm-up finds what that left, and its time begins whe
     replay.count_until_here();
     replay.push(launch.warps[2]);
     const TimedStatistics t = replay.finish();
-    CHECK(t.l1 == LevelAnswers{10, 0, 0, 0});
+    CHECK(t.levels[0] == LevelAnswers{10, 0, 0, 0});
     CHECK(t.dram_sectors == 0);
     CHECK(t.warps == 1);
     CHECK(t.warp_accesses == 10);
@@ -102,6 +102,6 @@ TEST_CASE("what is not counted to the end of the launch ends with the next warp,
     replay.count_from_here();
     const TimedStatistics t = replay.finish();
     CHECK(t.cycles == 0);
-    CHECK(t.l1.requests() == 0);
+    CHECK(t.levels[0].requests() == 0);
     CHECK(replay.batches().empty());
 }

@@ -149,7 +149,7 @@ TEST_CASE("groups of lanes without an active one pass the port for nothing, or t
             // The last group with lanes asks last, and finds the first one's sector on its way; data 500 cycles after
             // the first asked, or those of a hit after the last.
             CHECK(t.cycles == 500 + empty * c.before);
-            CHECK(t.l1.requests() == c.groups);
+            CHECK(t.levels[0].requests() == c.groups);
         }
     }
 }
@@ -185,7 +185,7 @@ TEST_CASE("where a whole warp, or a vector, goes at once there is no empty group
 TEST_CASE("functional requests do not depend on what empty groups take") {
     const Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 200)}, 20, 50, 3);
     const TimedStatistics free = timed(pairs_gpu(0), launch), taken = timed(pairs_gpu(2), launch);
-    CHECK(free.l1.requests() == taken.l1.requests());
+    CHECK(free.levels[0].requests() == taken.levels[0].requests());
     CHECK(free.loads == taken.loads);
     CHECK(free.cycles < taken.cycles);
 }

@@ -88,7 +88,7 @@ TEST_CASE("slow arithmetic takes collectors away from loads") {
         CHECK(t.lane_accesses == launch.lane_accesses());
         CHECK(t.instructions == t.warp_accesses * 10 + t.loads);
         CHECK(t.loads == t.warp_accesses * 4);
-        CHECK(t.l2.requests() == t.l1.misses());
+        CHECK(t.levels[1].requests() == t.levels[0].misses());
     }
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("with collectors all warps end, whatever is scarce") {
                 random_launch({region(traces::ObjectKind::node, 0x200000, 64, 64, 300)}, 12, 20, ways);
             const TimedStatistics t = timed(gpu, launch);
             CHECK(t.lane_accesses == launch.lane_accesses());
-            CHECK(t.l2.requests() == t.l1.misses());
+            CHECK(t.levels[1].requests() == t.levels[0].misses());
             CHECK(t.visit_cycles >= t.warp_accesses * 30);
         }
     }

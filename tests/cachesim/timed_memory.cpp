@@ -91,7 +91,7 @@ TEST_CASE("queues at the outputs never make a launch slower than queues at the i
     gpu.timing->crossbar_queues = CrossbarQueues::inputs;
     const auto inputs = timed(gpu, launch);
     CHECK(outputs.cycles < inputs.cycles);
-    CHECK(inputs.l2.requests() > 1000);
+    CHECK(inputs.levels[1].requests() > 1000);
 }
 
 TEST_CASE("a row that is open is read at once, another after closing and opening") {
@@ -143,14 +143,14 @@ TEST_CASE("a sector that merges no more holds up its slice, and is then found th
     gpu.timing->l2_mshr_merges = 2;
     // Three SMs ask for line 0, a fourth for line 9. Unloaded: 15 = 500 - 200 + ... each, one a cycle.
     const TimedStatistics holds = at_once(gpu, {0, 0, 0, 9});
-    CHECK(holds.l2.merges == 1);
-    CHECK(holds.l2.hits == 1);
-    CHECK(holds.l2.misses() == 2);
+    CHECK(holds.levels[1].merges == 1);
+    CHECK(holds.levels[1].hits == 1);
+    CHECK(holds.levels[1].misses() == 2);
     CHECK(holds.cycles == 300 + 1 + 500);  // looked up a cycle after the data of line 0 are in L2, at 300
     gpu.timing->l2_mshr_merges = 3;
     const TimedStatistics merges = at_once(gpu, {0, 0, 0, 9});
-    CHECK(merges.l2.merges == 2);
-    CHECK(merges.l2.hits == 0);
+    CHECK(merges.levels[1].merges == 2);
+    CHECK(merges.levels[1].hits == 0);
     CHECK(merges.cycles == 3 + 500);
 }
 

@@ -35,8 +35,8 @@ Launch mixed_launch(std::uint64_t seed) {
 
 void check_same(const TimedStatistics& a, const TimedStatistics& b) {
     CHECK(a.cycles == b.cycles);
-    CHECK(a.l1 == b.l1);
-    CHECK(a.l2 == b.l2);
+    CHECK(a.levels[0] == b.levels[0]);
+    CHECK(a.levels[1] == b.levels[1]);
     CHECK(a.dram_sectors == b.dram_sectors);
     CHECK(a.visit_cycles == b.visit_cycles);
     CHECK(a.l1_port.busy == b.l1_port.busy);
@@ -58,8 +58,8 @@ TEST_CASE("lines numbered with gaps between regions are timed like lines numbere
             launch.regions.push_back(huge);
             CAPTURE(seed);
             check_same(timed(gpu, launch), dense);
-            CHECK(dense.l1.merges > 0);
-            CHECK(dense.l1.hits > 1000);
+            CHECK(dense.levels[0].merges > 0);
+            CHECK(dense.levels[0].hits > 1000);
         }
     }
 }
@@ -123,11 +123,11 @@ TEST_CASE("one warp alone hits what it hits without time, under every policy, ov
             const TimedStatistics t = timed(gpu, single);
             CAPTURE(policy, three);
             CHECK(counts.levels[0].sectors > 1000);
-            CHECK(t.l1.requests() == counts.levels[0].sectors);
-            CHECK(t.l1.misses() == counts.levels[1].sectors);
-            CHECK(t.l1.merges == 0);
-            if (three) CHECK(t.l2.misses() == counts.levels[2].sectors);
-            CHECK((three ? t.l3 : t.l2).misses() == counts.dram_sectors);
+            CHECK(t.levels[0].requests() == counts.levels[0].sectors);
+            CHECK(t.levels[0].misses() == counts.levels[1].sectors);
+            CHECK(t.levels[0].merges == 0);
+            if (three) CHECK(t.levels[1].misses() == counts.levels[2].sectors);
+            CHECK(t.levels[three ? 2 : 1].misses() == counts.dram_sectors);
             CHECK(t.dram_sectors == counts.dram_sectors);
             CHECK(counts.dram_sectors < counts.levels[1].sectors);
         }
@@ -146,9 +146,9 @@ TEST_CASE("sectors smaller than half a load, and vectors of few lanes, are asked
             const Launch launch = mixed_launch(sector + width);
             const TimedStatistics t = timed(gpu, launch);
             CAPTURE(sector, width);
-            CHECK(t.l1.requests() == replay(gpu, launch).all().levels[0].sectors);
+            CHECK(t.levels[0].requests() == replay(gpu, launch).all().levels[0].sectors);
             CHECK(t.lane_accesses == launch.lane_accesses());
-            CHECK(t.l2.requests() == t.l1.misses());
+            CHECK(t.levels[1].requests() == t.levels[0].misses());
         }
     }
 }
@@ -158,12 +158,12 @@ TEST_CASE("what a fill of L1 brings beside a missing sector hits later") {
     const Launch launch = launch_of({chase({0, 2, 4, 6})});  // the four sectors of one line
     const TimedStatistics apart = timed(gpu, launch);
     CHECK(apart.cycles == 4 * 500);
-    CHECK(apart.l1.sector_misses == 3);
+    CHECK(apart.levels[0].sector_misses == 3);
     gpu.levels[0].fill_bytes = 128;
     const TimedStatistics together = timed(gpu, launch);
-    CHECK(together.l1.hits == 3);
-    CHECK(together.l1.misses() == 1);
-    CHECK(together.l2.requests() == 4);
+    CHECK(together.levels[0].hits == 3);
+    CHECK(together.levels[0].misses() == 1);
+    CHECK(together.levels[1].requests() == 4);
     CHECK(together.dram_sectors == 4);
     CHECK(together.cycles <= 500 + 3 * 30 + 4);
 }

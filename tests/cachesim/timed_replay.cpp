@@ -30,13 +30,13 @@ TEST_CASE("a broadcast is one request, and an all-distinct gather takes the port
     std::vector<std::uint32_t> same(32, 5), apart;
     for (std::uint32_t i = 0; i < 32; ++i) apart.push_back(i * elements_per_line);
     const auto broadcast = timed(timed_gpu(), launch_of({{same, same}}));
-    CHECK(broadcast.l1.requests() == 2);
+    CHECK(broadcast.levels[0].requests() == 2);
     CHECK(broadcast.l1_port.busy == 2);
     CHECK(broadcast.cycles == 500 + 30);
 
     const auto gather = timed(timed_gpu(), launch_of({{apart, apart}}));
-    CHECK(gather.l1.requests() == 64);
-    CHECK(gather.l1.hits == 32);
+    CHECK(gather.levels[0].requests() == 64);
+    CHECK(gather.levels[0].hits == 32);
     CHECK(gather.l1_port.busy == 2 * 32 / 4);   // 4 tags a cycle
     CHECK(gather.cycles >= 500 + 30 + 2 * 7);   // the last of 32 requests leaves 7 cycles after the first
     CHECK(gather.cycles <= 500 + 30 + 2 * 32);  // crossbar: 32 sectors, one a cycle
@@ -86,9 +86,9 @@ TEST_CASE("what enters a level is what missed above it, and every request has an
             {region(ObjectKind::node, 0x200000, 64, 64, 3000), region(ObjectKind::triangle, 0x800000, 48, 48, 2000)},
             40, 60, fill);
         const TimedStatistics t = timed(gpu, launch);
-        CHECK(t.l2.requests() == t.l1.misses());
-        if (fill == 32) CHECK(t.dram_sectors == t.l2.misses());
-        CHECK(t.dram_sectors >= t.l2.misses());
+        CHECK(t.levels[1].requests() == t.levels[0].misses());
+        if (fill == 32) CHECK(t.dram_sectors == t.levels[1].misses());
+        CHECK(t.dram_sectors >= t.levels[1].misses());
         CHECK(t.lane_accesses == launch.lane_accesses());
         CHECK(t.cycles > 0);
     }
@@ -110,8 +110,8 @@ TEST_CASE("without latency a timed replay hits what the functional one hits") {
         const TimedStatistics t = timed(gpu, launch, ideal);
         const Counters counts = replay(gpu, launch).all();
         CAPTURE(seed);
-        CHECK(t.l1.requests() == counts.levels[0].sectors);
-        CHECK(static_cast<double>(t.l1.misses()) ==
+        CHECK(t.levels[0].requests() == counts.levels[0].sectors);
+        CHECK(static_cast<double>(t.levels[0].misses()) ==
               Approx(static_cast<double>(counts.levels[1].sectors)).epsilon(0.01));
         CHECK(static_cast<double>(t.dram_sectors) == Approx(static_cast<double>(counts.dram_sectors)).epsilon(0.01));
     }
@@ -129,7 +129,7 @@ TEST_CASE("taking a cost away never makes a launch slower") {
     Idealised l1, l2, bandwidth, latency, full;
     l1.perfect_l1 = l2.perfect_l2 = bandwidth.infinite_bandwidth = latency.no_added_latency = full.full_warps = true;
     for (const Idealised& ideal : {l1, l2, bandwidth, latency, full}) CHECK(timed(gpu, launch, ideal).cycles <= all);
-    CHECK(timed(gpu, launch, l1).l2.requests() == 0);
+    CHECK(timed(gpu, launch, l1).levels[1].requests() == 0);
     CHECK(timed(gpu, launch, l2).dram_sectors == 0);
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("tiny and odd caches hold up the port but lose nothing") {
         const Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 300)}, 12, 20, ways);
         const TimedStatistics t = timed(cramped_gpu(ways), launch);
         CHECK(t.lane_accesses == launch.lane_accesses());
-        CHECK(t.l2.requests() == t.l1.misses());
+        CHECK(t.levels[1].requests() == t.levels[0].misses());
     }
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("greedy-then-oldest stays with a warp as long as it is ready") {
     gpu.scheduler = Scheduler::greedy_then_oldest;
     const auto greedy = timed(gpu, launch);
     CHECK(greedy.visit_cycles < alternating.visit_cycles);
-    CHECK(greedy.l1 == alternating.l1);
+    CHECK(greedy.levels[0] == alternating.levels[0]);
 }
 
 TEST_CASE("what a timed replay needs and lacks is said by name") {

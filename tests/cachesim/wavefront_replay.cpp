@@ -192,7 +192,7 @@ TEST_CASE("in time, a kernel waits for the one before, and streamed bytes take t
     const TimedStatistics one = run({{{get, {0}}}}), two = run({{{get, {0}}}, {{get, {0}}}});
     CHECK(one.dram_sectors == 1);
     CHECK(two.dram_sectors == 1);  // L2 keeps it
-    CHECK(two.l1.requests() == 2 * one.l1.requests());
+    CHECK(two.levels[0].requests() == 2 * one.levels[0].requests());
     const std::uint64_t second = two.cycles - one.cycles;
     CHECK(second >= 1000 + 200);
     CHECK(second <= 1000 + 200 + 300);  // a window of cycles may pass
@@ -246,9 +246,9 @@ TEST_CASE(
             CAPTURE(cpu, fill);
             CHECK(times.dram_sectors == counts.dram_sectors);
             if (fill > 32) continue;
-            CHECK(times.l2.requests() == counts.levels[1].sectors);
-            if (cpu) CHECK(times.l3.requests() == counts.levels[2].sectors);
-            CHECK(times.l1.misses() == counts.levels[1].sectors);
+            CHECK(times.levels[1].requests() == counts.levels[1].sectors);
+            if (cpu) CHECK(times.levels[2].requests() == counts.levels[2].sectors);
+            CHECK(times.levels[0].misses() == counts.levels[1].sectors);
         }
     }
 }

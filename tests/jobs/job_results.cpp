@@ -53,6 +53,13 @@ TEST_CASE("The result of a timed replay reads back with its cycles and its count
     CHECK(to_text(own) == to_text(other));
     CHECK(to_csv(own) == to_csv(other));
     CHECK(to_json(own) == to_json(other));
+
+    const cachesim::TimedStatistics& launch = result.times.at(0).launches.at(0);
+    const tools::Json text = tools::Json::parse(tools::result_text(result)).at("times").at(0);
+    const char* const keys[] = {"l1", "l2", "l3"};
+    for (std::size_t level = 0; level < 3; ++level)
+        CHECK(text.at("launches").at(0).at(keys[level]).at("hits") == launch.levels[level].hits);
+    CHECK(launch.levels[0].hits != launch.levels[1].hits);
 }
 
 TEST_CASE("The result of explain reads back with its heat maps") {

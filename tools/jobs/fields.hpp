@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -24,9 +25,23 @@ template <class Struct, class Member>
 struct Field {
     const char* key;
     Member Struct::*member;
+
+    auto& of(auto& object) const { return object.*member; }
 };
 template <class Struct, class Member>
 Field(const char*, Member Struct::*) -> Field<Struct, Member>;
+
+/// One element of a member that is an array, under a key of its own.
+template <class Struct, class Array>
+struct Element {
+    const char* key;
+    Array Struct::*array;
+    std::size_t index;
+
+    auto& of(auto& object) const { return (object.*array)[index]; }
+};
+template <class Struct, class Array>
+Element(const char*, Array Struct::*, int) -> Element<Struct, Array>;
 
 /// To be specialised: `static constexpr std::tuple all{Field{"spp", &S::spp}, …};`, every member that is to be kept.
 template <class Struct>
@@ -80,7 +95,7 @@ Json write_value(const T& value) {
         return value ? write_value(*value) : Json(nullptr);
     } else if constexpr (HasFields<T>) {
         Json object = Json::object();
-        std::apply([&](const auto&... field) { ((object[field.key] = write_value(value.*field.member)), ...); },
+        std::apply([&](const auto&... field) { ((object[field.key] = write_value(field.of(value))), ...); },
                    Fields<T>::all);
         return object;
     } else {  // a list
@@ -161,7 +176,7 @@ void Reader::read(const Json& json, const std::string& place, T& out) const {
         std::apply([&](const auto&... field) { check_keys(json, place, {field.key...}); }, Fields<T>::all);
         const auto read_member = [&](const auto& field) {
             if (const auto at = json.find(field.key); at != json.end())
-                read(*at, join_places(place, field.key), out.*field.member);
+                read(*at, join_places(place, field.key), field.of(out));
             else if (kind_ == Kind::result)
                 missing(join_places(place, field.key));
         };

@@ -98,7 +98,7 @@ TimedReplay::Impl::State TimedReplay::Impl::state(Cycle time) const {
     for (const TimedSm& sm : sms) s.counts += sm.statistics(now);
     s.counts.instructions += s.counts.loads;
     s.counts.issue.busy += static_cast<double>(s.counts.loads);
-    (rules.three_levels() ? s.counts.l3 : s.counts.l2) = memory.answers();
+    s.counts.levels[rules.gpu.levels.size() - 1] = memory.answers();
     s.counts.dram_sectors = memory.dram_sectors() + streamed_placed;
     s.streamed = streamed_placed;
     s.registers = memory.waiting();
@@ -115,7 +115,7 @@ TimedStatistics TimedReplay::Impl::between(const State& from, const State& to) c
         static_cast<double>(to.streamed - from.streamed) * cycles_per_sector / rules.timing.dram_channels;
     t.cycles = to.time - from.time + static_cast<Cycle>(std::ceil(streamed_cycles));
     t.seconds = static_cast<double>(t.cycles) / (rules.timing.clock_mhz * 1e6);
-    const auto asked = static_cast<double>((rules.three_levels() ? t.l3 : t.l2).requests());
+    const auto asked = static_cast<double>(t.levels[gpu.levels.size() - 1].requests());
     const std::uint64_t l1s = std::uint64_t{gpu.sms} * gpu.l1_per_sm;
     t.warp_slots = std::uint64_t{gpu.sms} * rules.cta_slots * gpu.warps_per_cta;
     const LevelTiming last = rules.timing.level(gpu.levels.size() - 1);
@@ -124,7 +124,7 @@ TimedStatistics TimedReplay::Impl::between(const State& from, const State& to) c
     t.issue.copies = std::uint64_t{gpu.sms} * rules.timing.schedulers;
     t.l1_port.copies = l1s;
     t.l1_tags = {t.l1_tags.busy * rules.tag_cost, l1s};
-    t.l1_data = {static_cast<double>(t.l1.requests()) * rules.data_cost, l1s};
+    t.l1_data = {static_cast<double>(t.levels[0].requests()) * rules.data_cost, l1s};
     t.l1_mshrs.copies = l1s * rules.timing.l1_mshrs;
     t.l2_mshrs = {static_cast<double>(to.registers - from.registers),
                   std::uint64_t{gpu.levels.back().slices} * last.mshrs};

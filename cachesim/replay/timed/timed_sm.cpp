@@ -64,12 +64,12 @@ TimedStatistics TimedSm::statistics(Cycle now) const {
     TimedStatistics all = counts_;
     for (const Port& port : ports_) {
         const Port::Counts& counts = port.counts();
-        all.l1 += counts.answers;
+        all.levels[0] += counts.answers;
         all.l1_port.busy += counts.busy;
         all.l1_tags.busy += counts.tags;
         all.l1_mshrs.busy += counts.registers;
     }
-    if (private_) all.l2 += private_->counts();
+    if (private_) all.levels[1] += private_->counts();
     for (const Warp& warp : warps_)
         if (warp.records.resident()) all.warp_cycles += now - std::min(now, warp.records.since());
     return all;

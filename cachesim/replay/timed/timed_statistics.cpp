@@ -1,6 +1,7 @@
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <initializer_list>
 
 namespace raycache::cachesim {
@@ -23,8 +24,7 @@ void for_each_counter(TimedStatistics& a, const TimedStatistics& b, const Use& u
                              &TimedStatistics::dram_sectors, &TimedStatistics::visit_cycles, &TimedStatistics::warps,
                              &TimedStatistics::warp_cycles})
         use(a.*count, b.*count);
-    for (const auto level : {&TimedStatistics::l1, &TimedStatistics::l2, &TimedStatistics::l3})
-        for_each_counter(a.*level, b.*level, use);
+    for (std::size_t level = 0; level < most_levels; ++level) for_each_counter(a.levels[level], b.levels[level], use);
     for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
                                 &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
                                 &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs})

@@ -1,7 +1,10 @@
 // What a timed replay counts: plain numbers, added up by anyone, formatted elsewhere.
 #pragma once
 
+#include <array>
 #include <cstdint>
+
+#include "cachesim/replay/statistics.hpp"
 
 namespace raycache::cachesim {
 
@@ -27,9 +30,9 @@ struct TimedStatistics {
     double seconds = 0;        ///< cycles / clock
     std::uint64_t rays = 0;
     std::uint64_t warp_accesses = 0, lane_accesses = 0;
-    std::uint64_t instructions = 0;  ///< warp instructions: loads, and those between accesses
-    std::uint64_t loads = 0;         ///< load instructions of warps
-    LevelAnswers l1, l2, l3;         ///< l3: nothing where there are two levels
+    std::uint64_t instructions = 0;                  ///< warp instructions: loads, and those between accesses
+    std::uint64_t loads = 0;                         ///< load instructions of warps
+    std::array<LevelAnswers, most_levels> levels{};  ///< from L1 down; nothing where there is no such level
     std::uint64_t dram_sectors = 0;
 
     /// Busy cycles of each resource, summed over its copies, and how many copies there are: utilisation =

@@ -23,21 +23,18 @@ template <auto member>
 constexpr TimedQuantity quantity(const char* name) {
     return {name, [](const TimedStatistics& t, const Units&) { return static_cast<double>(t.*member); }};
 }
-inline constexpr LevelAnswers TimedStatistics::*answers[] = {&TimedStatistics::l1, &TimedStatistics::l2,
-                                                             &TimedStatistics::l3};
 template <std::size_t level, auto member>
 constexpr TimedQuantity answered(const char* name) {
-    return {name,
-            [](const TimedStatistics& t, const Units&) { return static_cast<double>((t.*answers[level]).*member); }};
+    return {name, [](const TimedStatistics& t, const Units&) { return static_cast<double>(t.levels[level].*member); }};
 }
 template <std::size_t level>
 constexpr TimedQuantity requests(const char* name) {
     return {name,
-            [](const TimedStatistics& t, const Units&) { return static_cast<double>((t.*answers[level]).requests()); }};
+            [](const TimedStatistics& t, const Units&) { return static_cast<double>(t.levels[level].requests()); }};
 }
 
 /// The level that all SMs share.
-inline const LevelAnswers& shared_level(const TimedStatistics& t) { return t.l3.requests() ? t.l3 : t.l2; }
+inline const LevelAnswers& shared_level(const TimedStatistics& t) { return t.levels[t.levels[2].requests() ? 2 : 1]; }
 inline double gigabytes(std::uint64_t sectors, const Units& u) {
     return static_cast<double>(sectors) * u.sector_bytes / 1e9;
 }
@@ -61,7 +58,7 @@ constexpr std::array<TimedFigure, 8> of_level(const char* object, const std::arr
     constexpr auto merges = answered<level, &LevelAnswers::merges>("merges");
     constexpr auto all = requests<level>("requests");
     constexpr TimedQuantity found{"hits + merges", [](const TimedStatistics& t, const Units&) {
-                                      const LevelAnswers& a = t.*answers[level];
+                                      const LevelAnswers& a = t.levels[level];
                                       return static_cast<double>(a.hits + a.merges);
                                   }};
     const auto count = [&](std::size_t i, const char* name, const char* what, const char* definition,
