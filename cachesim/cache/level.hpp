@@ -11,6 +11,7 @@
 
 #include "cachesim/cache/fill.hpp"
 #include "cachesim/cache/geometry.hpp"
+#include "cachesim/cache/line_fills.hpp"
 
 namespace raycache::cachesim {
 
@@ -30,12 +31,18 @@ public:
     /// leaves in `sectors` those that it fetched: the wanted ones that were missing, and what Fill adds.
     virtual void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
                          std::size_t count) = 0;
+
+    /// Before the first look-up: fills() will be asked for. Not where nobody asks, as it costs some caches time.
+    virtual void count_fills() {}
+    /// Of all look-ups so far.
+    virtual LineFills fills() const = 0;
 };
 
 /// `Policy` holds tags and sectors of all sets and decides what to evict. It offers
 ///     Policy(sets, ways, sectors_per_line, …)                  all sets empty; `more` comes last
 ///     std::uint32_t access(set, line, sectors)                 the sectors that were missing; now present
 ///     void prefetch(set, line) const                           a hint, changes nothing
+///     LineFills fills() const                                  so far
 template <class Policy>
 class LevelWith final : public Level {
 public:
@@ -58,6 +65,8 @@ public:
             if (fill_.widens() && missing) sectors[i] |= policy_.access(sets[i], lines[i], fill_.pieces(missing));
         }
     }
+
+    LineFills fills() const override { return policy_.fills(); }
 
 private:
     Fill fill_;

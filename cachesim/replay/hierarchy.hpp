@@ -48,6 +48,9 @@ public:
 
     GroupNumbers& group_numbers() { return numbers_; }
 
+    /// Of the shared level, in all windows that have ended.
+    LineFills shared_fills() const { return shared_.fills(); }
+
     /// The counts of all windows that have ended, of these batches together.
     std::vector<RayGroup> groups(const std::vector<const BatchGroups*>& batches) const;
 

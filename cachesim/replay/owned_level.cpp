@@ -13,6 +13,7 @@ OwnedLevel::OwnedLevel(const HierarchyRules& rules, std::size_t level, std::uint
 void OwnedLevel::clear() {
     const unsigned caches = number_ == 0 && number_ != rules_.shared ? rules_.gpu.l1_per_sm : 1;
     level_ = make_level(rules_.gpu.levels[number_], {caches, sm_ * caches}, rules_.ids.bound(), rules_.instructions);
+    if (number_ == rules_.shared) level_->count_fills();
 }
 
 const std::uint32_t* OwnedLevel::sets(const Lookups& lookups, const Origin* window, Workspace& work) const {

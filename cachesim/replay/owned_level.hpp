@@ -27,6 +27,9 @@ public:
     /// Forgets all lines.
     void clear();
 
+    /// Of the shared level.
+    LineFills fills() const { return level_->fills(); }
+
 private:
     const std::uint32_t* sets(const Lookups&, const Origin* window, Workspace&) const;
     void report(const Lookups&, const Origin* window, Workspace&) const;

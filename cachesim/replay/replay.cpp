@@ -106,4 +106,6 @@ std::vector<LaunchStatistics> Replay::batches() const {
     return each;
 }
 
+LineFills Replay::last_level_fills() const { return impl_->memory.shared_fills(); }
+
 }  // namespace raycache::cachesim

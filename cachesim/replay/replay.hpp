@@ -27,6 +27,7 @@
 #include <memory>
 #include <vector>
 
+#include "cachesim/cache/line_fills.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/request_sink.hpp"
@@ -69,6 +70,11 @@ public:
 
     /// The counts of each batch. Complete after finish(): before, of what has run in windows that have ended.
     std::vector<LaunchStatistics> batches() const;
+
+    /// How far the last level is warm: of all its line misses since the launch began, counted in a batch or not, how
+    /// many took a way that was still empty, and so would perhaps have hit in a cache that had been running for longer.
+    /// Of what has run in windows that have ended.
+    LineFills last_level_fills() const;
 
 private:
     struct Impl;

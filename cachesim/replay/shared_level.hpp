@@ -19,6 +19,8 @@ public:
     /// for their groups.
     void look_up(Lookups&, const Origin* window, Workspace&);
 
+    LineFills fills() const { return level_.fills(); }
+
 private:
     void look_up_written(Lookups&, const Origin* window, Workspace&);
 

@@ -27,6 +27,7 @@ CacheGeometry geometry(std::uint64_t sets, std::uint64_t ways, SetIndex index = 
 
 void fills_and_evicts_by_hand(Level&& level) {
     const CacheGeometry g = geometry(1, 2);
+    level.count_fills();
     CHECK(look_up(level, g, 0, 0b0011) == 0b0011);  // a miss fetches what is wanted
     CHECK(look_up(level, g, 0, 0b0011) == 0);
     CHECK(look_up(level, g, 0, 0b1110) == 0b1100);  // a sector miss fetches what is missing
@@ -39,6 +40,7 @@ void fills_and_evicts_by_hand(Level&& level) {
     CHECK(look_up(level, g, 9, 0b0001) == 0b0001);  // evicts 0 with all its sectors
     CHECK(look_up(level, g, 0, 0b1000) == 0b1000);
     CHECK(look_up(level, g, 0, 0b0001) == 0b0001);
+    CHECK(level.fills() == LineFills{6, 2});  // 0 and 7 found an empty way; 9, 7, 9 and 0 did not
 }
 
 /// Those of this machine that have vectors.

@@ -31,7 +31,9 @@ NaiveCache::Answer NaiveCache::look_up(std::uint64_t line, const std::set<unsign
     auto way = std::find_if(set.ways.begin(), set.ways.end(), [&](const Line& l) { return l.number == line; });
     if (way == set.ways.end()) {
         const Line fresh{line, now_, now_, {}};
+        ++fills_.line_misses;
         if (set.ways.size() < geometry_.ways) {
+            ++fills_.of_empty_ways;
             way = set.ways.insert(set.ways.end(), fresh);
         } else {
             way = set.ways.begin() + static_cast<std::ptrdiff_t>(victim(set_number, set));

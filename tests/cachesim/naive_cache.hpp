@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cachesim/cache/line_fills.hpp"
 #include "cachesim/gpus/gpu.hpp"
 
 namespace raycache::cachesim::test {
@@ -22,6 +23,8 @@ public:
         std::set<unsigned> missing, fetched;  ///< sectors of the line; `fetched` includes `missing`
     };
     Answer look_up(std::uint64_t line, const std::set<unsigned>& sectors);
+
+    LineFills fills() const { return fills_; }
 
 private:
     struct Line {
@@ -42,6 +45,7 @@ private:
 
     CacheGeometry geometry_;
     std::uint64_t number_, now_ = 0;
+    LineFills fills_;
     std::map<std::uint64_t, Set> sets_;
 };
 

@@ -76,6 +76,8 @@ public:
         return groups;
     }
 
+    LineFills last_level_fills() const { return caches_.back().front().fills(); }
+
 private:
     void place(unsigned sm, unsigned first_slot) {
         if (next_cta_ == ctas_.size()) return;
@@ -185,6 +187,12 @@ private:
 
 LaunchStatistics naive_replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample) {
     return {sample, NaiveReplay(gpu, launch).run()};
+}
+
+LineFills naive_last_level_fills(const Gpu& gpu, const Launch& launch) {
+    NaiveReplay replay(gpu, launch);
+    replay.run();
+    return replay.last_level_fills();
 }
 
 LaunchStatistics replay(const Gpu& gpu, const Launch& launch, std::uint32_t sample, InstructionSet instructions) {

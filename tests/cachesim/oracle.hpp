@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/cache/line_fills.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/instruction_set.hpp"
 #include "cachesim/replay/statistics.hpp"
@@ -13,6 +14,9 @@
 namespace raycache::cachesim::test {
 
 LaunchStatistics naive_replay(const Gpu&, const Launch&, std::uint32_t sample = 0);
+
+/// Of its last level, when the launch has ended.
+LineFills naive_last_level_fills(const Gpu&, const Launch&);
 
 /// The same launch through Replay.
 LaunchStatistics replay(const Gpu&, const Launch&, std::uint32_t sample = 0, InstructionSet = best_instruction_set());

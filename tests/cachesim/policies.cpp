@@ -124,6 +124,7 @@ TEST_CASE("every policy gives the answers of the naive cache, for any number of 
     g.seed = 42;
     for (const InstructionSet instructions : instruction_sets()) {
         const auto level = make_level(g, 2, 2000, instructions);
+        level->count_fills();
         std::vector<NaiveCache> naive{NaiveCache(g, 0), NaiveCache(g, 1)};
         std::mt19937 random(7);
         for (int i = 0; i < 3000; ++i) {
@@ -138,5 +139,8 @@ TEST_CASE("every policy gives the answers of the naive cache, for any number of 
             CAPTURE(policy, ways, fill, i);
             REQUIRE(look_up(*level, g, line, sectors, cache) == expected);
         }
+        LineFills fills = naive[0].fills();
+        fills += naive[1].fills();
+        CHECK(level->fills() == fills);
     }
 }

@@ -69,6 +69,20 @@ TEST_CASE("a tiny launch counts as computed by hand") {
     CHECK(s.all() == expected);
 }
 
+TEST_CASE("a tiny launch fills empty ways of the last level as computed by hand") {
+    Gpu gpu = one_warp_at_a_time();
+    gpu.levels[0].sets = gpu.levels[0].ways = 1;
+    gpu.levels[1].sets = 1;
+    gpu.levels[1].ways = 2;
+    Replay replay(gpu, nodes, 0);
+    replay.count_until_here();  // counted or not is the same
+    // Lines 0, 0 (a sector miss), 1, 0 (hits in L2), 2, 1, 0: of five line misses two find an empty way.
+    replay.push(warp({{0}, {1}, {2}, {0}, {4}, {2}, {0}}));
+    CHECK(replay.last_level_fills() == LineFills{});  // nothing has run
+    replay.finish();
+    CHECK(replay.last_level_fills() == LineFills{5, 2});
+}
+
 TEST_CASE("warps of an SM take turns") {
     // With one line of L1, A A B B would hit twice; taking turns, A B A B never does.
     Gpu gpu = one_warp_at_a_time();

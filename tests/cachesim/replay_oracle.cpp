@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "cachesim/replay/replay.hpp"
 #include "oracle.hpp"
 #include "random_launch.hpp"
 #include "tests/real_data.hpp"
@@ -61,6 +62,25 @@ TEST_CASE("a replay equals the naive replay for every policy, fill and number of
     gpu.levels[0].fill_bytes = 64;
     gpu.levels[0].slices = 2;
     check_equal(gpu, usual_regions);
+}
+
+TEST_CASE("a replay fills as many empty ways of the last level as the naive replay, for every policy", "[oracle]") {
+    const auto* const policy = GENERATE("fifo", "lru", "random", "tree_plru");
+    const auto ways = GENERATE(1, 3, 16, 100);
+    Gpu gpu = small_gpu();
+    gpu.levels.back().policy = policy;
+    gpu.levels.back().ways = static_cast<std::uint64_t>(ways);
+    CAPTURE(policy, ways);
+    const Launch launch = random_launch(usual_regions, 60, 200, 5);  // more than one window
+    const LineFills expected = naive_last_level_fills(gpu, launch);
+    CHECK(expected.of_empty_ways <= gpu.levels.back().sets * gpu.levels.back().ways);
+    for (const InstructionSet instructions : instruction_sets()) {
+        Replay replay(gpu, launch.regions, 0, instructions);
+        CHECK(replay.last_level_fills() == LineFills{});
+        for (const auto& warp : launch.warps) replay.push(warp);
+        replay.finish();
+        CHECK(replay.last_level_fills() == expected);
+    }
 }
 
 TEST_CASE("a replay equals the naive replay for three levels", "[oracle]") {

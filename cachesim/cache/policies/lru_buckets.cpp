@@ -81,6 +81,8 @@ public:
         }
     }
 
+    LineFills fills() const override { return fills_; }
+
 private:
     /// Look-ups from `i` to at most `end` as long as they are to this cache. Returns the first that was not done.
     template <bool widens>
@@ -157,10 +159,13 @@ private:
             }
         }
         Set& set = sets_[set_number];
-        if (set.lines == ways_) [[likely]]
+        ++fills_.line_misses;
+        if (set.lines == ways_) [[likely]] {
             evict(number, set_number);
-        else
+        } else {
             ++set.lines;
+            ++fills_.of_empty_ways;
+        }
         std::uint32_t bucket = belongs, empty = equal(tags[bucket], no_line);
         if (!empty) [[unlikely]] {
             ++strayed[belongs];
@@ -273,6 +278,7 @@ private:
     std::vector<std::uint32_t> queues_;  ///< slots; places for `ways` of each set
     std::vector<Cache> caches_;
     std::vector<std::uint32_t> ages_, slots_by_age_, by_time_;  ///< of move_horizon()
+    LineFills fills_;
 };
 
 Level* new_lru_buckets(const CacheGeometry& geometry, unsigned caches) { return new LruBuckets(geometry, caches); }

@@ -29,17 +29,11 @@ public:
 
     void process(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors,
                  std::size_t count) override {
-        if (near_) {
-            for (std::size_t i = 0; i < count; ++i) sectors[i] = fetch(sets_[sets[i]], lines[i], sectors[i]);
-            return;
-        }
-        constexpr std::size_t ahead = 32;  // so that their memory is on its way
-        for (std::size_t i = 0; i < std::min(ahead, count); ++i) prefetch(sets[i]);
-        for (std::size_t i = 0; i < count; ++i) {
-            prefetch(sets[std::min(i + ahead, count - 1)]);
-            sectors[i] = fetch(sets_[sets[i]], lines[i], sectors[i]);
-        }
+        counts_ ? look_up<true>(sets, lines, sectors, count) : look_up<false>(sets, lines, sectors, count);
     }
+
+    void count_fills() override { counts_ = true; }
+    LineFills fills() const override { return fills_; }
 
 private:
     /// A cache of so many bytes of words stays in the L1 of the machine while its look-ups last.
@@ -49,19 +43,38 @@ private:
         std::uint32_t words[vectors * lanes_of_vector] = {};
     };
 
+    template <bool counts>
+    void look_up(const std::uint32_t* sets, const std::uint32_t* lines, std::uint32_t* sectors, std::size_t count) {
+        LineFills fills;
+        if (near_) {
+            for (std::size_t i = 0; i < count; ++i)
+                sectors[i] = fetch<counts>(sets_[sets[i]], lines[i], sectors[i], fills);
+        } else {
+            constexpr std::size_t ahead = 32;  // so that their memory is on its way
+            for (std::size_t i = 0; i < std::min(ahead, count); ++i) prefetch(sets[i]);
+            for (std::size_t i = 0; i < count; ++i) {
+                prefetch(sets[std::min(i + ahead, count - 1)]);
+                sectors[i] = fetch<counts>(sets_[sets[i]], lines[i], sectors[i], fills);
+            }
+        }
+        fills_ += fills;
+    }
+
     void prefetch(std::uint32_t set) const {
         for (std::size_t byte = 0; byte < sizeof(Set); byte += 64)
             __builtin_prefetch(reinterpret_cast<const char*>(&sets_[set]) + byte, 1);
     }
 
     /// The missing sectors and what Fill adds.
-    HWY_INLINE std::uint32_t fetch(Set& set, std::uint32_t line, std::uint32_t wanted) const {
-        const std::uint32_t missing = access(set, line, wanted);
+    template <bool counts>
+    HWY_INLINE std::uint32_t fetch(Set& set, std::uint32_t line, std::uint32_t wanted, LineFills& fills) const {
+        const std::uint32_t missing = access<counts>(set, line, wanted, fills);
         if (!fill_.widens() || !missing) return missing;
-        return missing | access(set, line, fill_.pieces(missing));
+        return missing | access<counts>(set, line, fill_.pieces(missing), fills);
     }
 
-    HWY_INLINE std::uint32_t access(Set& set, std::uint32_t line, std::uint32_t sectors) const {
+    template <bool counts>
+    HWY_INLINE std::uint32_t access(Set& set, std::uint32_t line, std::uint32_t sectors, LineFills& fills) const {
         const std::uint32_t sector_mask = (1u << sector_bits_) - 1;
         const std::uint32_t tag = line << sector_bits_;
         const Vector tag_mask = all(~sector_mask), wanted = all(tag);
@@ -76,6 +89,10 @@ private:
         const std::uint32_t difference = set.words[place] ^ tag;
         const auto equal = static_cast<std::int32_t>((difference >> sector_bits_) - 1) >> 31;
         const std::uint32_t present = difference & static_cast<std::uint32_t>(equal);
+        if constexpr (counts) {
+            fills.line_misses += present == 0;  // a line that is there has sectors
+            fills.of_empty_ways += set.words[place] == 0;
+        }
         Vector before = all(tag | present | sectors);
         const auto last = hn::BitCast(hn::RebindToSigned<Words>(), all(place));  // this way and all newer ones move
         for (unsigned v = 0; v < vectors; ++v) {
@@ -89,10 +106,11 @@ private:
     }
 
     Fill fill_;
-    bool near_;
+    bool near_, counts_ = false;
     std::uint64_t oldest_;  ///< bit of the oldest way
     unsigned sector_bits_;
     std::vector<Set> sets_;
+    LineFills fills_;
 };
 
 template <unsigned vectors>

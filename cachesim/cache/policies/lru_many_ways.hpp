@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/cache/line_fills.hpp"
+
 namespace raycache::cachesim {
 
 /// `Place` holds every way of one set and one more. A set is self-contained: the smaller a place is, the more of it
@@ -48,10 +50,13 @@ public:
         // The oldest way of the ring stands just before the newest: turning the ring by one evicts it.
         const Place victim = ways[newest].newer;
         Way& way = ways[victim];
+        ++fills_.line_misses;
         if (way.sectors) {
             Place* link = &chains[bucket(way.line)];
             while (*link != victim) link = &ways[*link].next;
             *link = way.next;
+        } else {
+            ++fills_.of_empty_ways;
         }
         newest = victim;
         way.line = line;
@@ -60,6 +65,8 @@ public:
         chain = victim;
         return sectors;
     }
+
+    LineFills fills() const { return fills_; }
 
 private:
     static constexpr Place none = static_cast<Place>(~Place{0});
@@ -90,6 +97,7 @@ private:
     std::vector<Way> ways_;
     std::vector<Place> newest_;
     std::vector<Place> chains_;  ///< first way of each bucket of each set
+    LineFills fills_;
 };
 
 }  // namespace raycache::cachesim

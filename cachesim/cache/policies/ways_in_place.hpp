@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cachesim/cache/level.hpp"
+#include "cachesim/cache/line_fills.hpp"
 
 namespace raycache::cachesim {
 
@@ -39,6 +40,8 @@ public:
         if (way < used) {
             present = sectors_[first + way];
         } else {
+            ++fills_.line_misses;
+            fills_.of_empty_ways += used < ways_;
             way = used < ways_ ? used_[set]++ : order_.victim(set);
             lines_[first + way] = line;
         }
@@ -46,6 +49,8 @@ public:
         order_.use(set, way);
         return sectors & ~present;
     }
+
+    LineFills fills() const { return fills_; }
 
 private:
     /// The place of the line, or `count`. Compares eight at a time without a branch, so that vector instructions do it.
@@ -66,6 +71,7 @@ private:
     std::vector<std::uint32_t> sectors_;
     std::vector<std::uint32_t> used_;  ///< by set: ways that are not empty, the first ones
     Order order_;
+    LineFills fills_;
 };
 
 /// A level whose sets are WaysInPlace; `more` goes to Order.
