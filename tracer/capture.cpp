@@ -33,6 +33,7 @@ CaptureSettings checked(CaptureSettings settings) {
 }
 
 std::vector<std::uint32_t> choose_launches(const CaptureSettings& settings, std::uint32_t samples_per_launch) {
+    if (!settings.first_indices.empty()) return settings.first_indices;
     const SampleSet& p = settings.strategy.samples;
     const std::uint64_t groups = (p.spp + samples_per_launch - 1) / samples_per_launch;
     const std::uint64_t wanted = (settings.trace_samples + samples_per_launch - 1) / samples_per_launch;

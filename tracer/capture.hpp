@@ -27,6 +27,8 @@ struct CaptureSettings {
     /// How many of the N sample indices are traced: a seeded random subset, ascending, the same for every strategy with
     /// this N. With the `samples` thread map whole groups of 32 consecutive indices are chosen instead, rounded up.
     std::uint64_t trace_samples = 8;
+    /// Not empty: the first sample index of each launch, instead of chosen ones; multiples of samples_per_launch().
+    std::vector<std::uint32_t> first_indices{};
     ThreadMap thread_map = ThreadMap::tile;
     ExecutionSettings execution;
     std::string program, command;  ///< for the provenance

@@ -69,4 +69,9 @@ double student_t_975(std::size_t degrees_of_freedom) {
     return boost::math::quantile(boost::math::students_t(static_cast<double>(degrees_of_freedom)), 0.975);
 }
 
+double widening(std::size_t degrees_of_freedom, double error) {
+    const boost::math::students_t distribution(static_cast<double>(degrees_of_freedom));
+    return boost::math::quantile(boost::math::complement(distribution, error / 2)) / student_t_975(degrees_of_freedom);
+}
+
 }  // namespace raycache::cachesim

@@ -26,6 +26,12 @@ struct Estimate {
     std::optional<double> half_width;
 };
 
+/// The same with an interval so many times as wide.
+inline Estimate widened(Estimate estimate, double times) {
+    if (estimate.half_width) *estimate.half_width *= times;
+    return estimate;
+}
+
 /// Sums per sample index, in the same order.
 struct Sums {
     std::vector<double> y, x;
@@ -49,5 +55,8 @@ Estimate product_of_powers(const std::vector<Power>&);
 
 /// The 0.975 quantile of Student's t distribution; degrees of freedom >= 1.
 double student_t_975(std::size_t degrees_of_freedom);
+
+/// By how much wider than a 95 % interval one is that misses in a share `error` of all cases; degrees of freedom >= 1.
+double widening(std::size_t degrees_of_freedom, double error);
 
 }  // namespace raycache::cachesim

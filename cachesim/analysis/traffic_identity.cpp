@@ -17,6 +17,12 @@ double Factors::product() const {
     return product;
 }
 
+void Factors::widen(double times) {
+    for (Estimate& term : terms) term = widened(term, times);
+    equal_miss_rates = widened(equal_miss_rates, times);
+    for (Estimate& level : locality) level = widened(level, times);
+}
+
 Sums sums_of(const std::vector<Counters>& counts, const Count& numerator, const Count& denominator,
              const CacheUnits& units) {
     Sums sums;

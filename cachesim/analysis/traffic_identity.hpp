@@ -64,6 +64,8 @@ struct Factors {
 
     const Estimate& cache_locality() const { return locality.back(); }
     double product() const;
+    /// Makes all intervals so many times as wide.
+    void widen(double times);
 };
 
 /// What the estimators of a quotient of counts take, from one Counters for each sample index.

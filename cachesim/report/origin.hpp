@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -17,10 +18,25 @@
 
 namespace raycache::cachesim {
 
+/// Where a series is an estimate of the steady state from windows (tools/jobs/windows): then each of its "launches" is
+/// what one block of sample indices says of a launch of the whole picture, with full caches and nothing drained.
+struct WindowSample {
+    std::uint32_t blocks = 0;                      ///< drawn: the units of intervals
+    std::uint32_t indices = 0;                     ///< neighbouring sample indices of each
+    std::uint32_t windows = 0, timed_windows = 0;  ///< of each
+    /// What intervals are wider by than those of one look: they hold in 95 % of all cases although the estimate was
+    /// looked at several times, to see whether it is certain enough.
+    double widening = 1;
+    /// Of the last cache's misses, those that took a way that held nothing, on average over the blocks.
+    double unfilled_share = 0;
+    bool last_cache_full = true;  ///< in every block
+};
+
 struct Origin {
     std::string scene, strategy, sequence, parameters, thread_map, gpu;
-    std::uint64_t spp = 0;  ///< N
-    CacheUnits caches;      ///< of the GPU
+    std::uint64_t spp = 0;                  ///< N
+    CacheUnits caches;                      ///< of the GPU
+    std::optional<WindowSample> windows{};  ///< none: whole launches, each from cold caches
 };
 
 /// Whether launches made with these thread maps (Provenance::thread_map) hold the same pixels and sample indices, so

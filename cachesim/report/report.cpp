@@ -8,6 +8,7 @@
 #include "cachesim/analysis/estimate.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/verdict.hpp"
+#include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
 
@@ -79,6 +80,13 @@ void compare(Row& row, const std::vector<Row>& rows, const std::string& baseline
     }
 }
 
+void widen(Row& row) {
+    if (!row.windows) return;
+    for (auto& figure : row.figures)
+        if (figure) figure = widened(*figure, row.windows->widening);
+    if (row.factors) row.factors->widen(row.windows->widening);
+}
+
 void note_compulsory(const Report& report, Notes& notes) {
     std::vector<std::string> gpus;
     for (const Row& row : report.rows)
@@ -127,8 +135,10 @@ Report make_report(const std::vector<Series>& all_series, const std::string& bas
     Notes notes(report.notes);
     for (Row& row : report.rows) {
         if (!baseline.empty() && row.strategy != baseline) compare(row, report.rows, baseline, notes);
+        widen(row);
         if (row.samples.size() == 1) notes.add("one sample index: no confidence interval");
     }
+    note_windows(report.rows, [&](const std::string& note) { notes.add(note); });
     note_compulsory(report, notes);
     return report;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cachesim/analysis/estimate.hpp"
+#include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
 
@@ -93,6 +94,9 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
                                 series.strategy, series.spp, baseline));
             }
         }
+        if (row.windows)
+            for (auto& figure : row.figures)
+                if (figure) figure = widened(*figure, row.windows->widening);
         report.rows.push_back(std::move(row));
     }
     note_occupancy(report);
@@ -100,6 +104,8 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
     if (!traffic.empty()) {
         report.traffic = make_report(traffic, baseline, GroupBy::none);
         for (const std::string& note : report.traffic.notes) report.notes.push_back(note);
+    } else {
+        note_windows(report.rows, [&](const std::string& note) { report.notes.push_back(note); });
     }
     return report;
 }

@@ -18,6 +18,10 @@ ReplayResult run(const ReplayJob& job, const std::vector<cachesim::Gpu>& gpus, O
             seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, job.timed);
         observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
     }
+    if (job.estimate.windows) {
+        Estimated estimated = estimate(job.launches, job.estimate, gpus, job.timed, observer, outputs);
+        return {std::move(estimated.subject), std::move(estimated.result.traffic), std::move(estimated.result.times)};
+    }
     const Launches launches(job.launches, outputs, observer);
     ReplayResult result;
     for (const cachesim::Gpu& gpu : gpus) result.subject.gpus.push_back(gpu_json(gpu));

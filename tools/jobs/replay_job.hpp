@@ -7,6 +7,7 @@
 #include "cachesim/report/timed_report.hpp"
 #include "tools/jobs/gpu_settings.hpp"
 #include "tools/jobs/launches.hpp"
+#include "tools/jobs/windows/estimate.hpp"
 
 namespace raycache::tools {
 
@@ -14,6 +15,7 @@ struct ReplayJob {
     LaunchSettings launches;
     GpuSettings gpu;
     bool timed = false;  ///< predict cycles, too
+    EstimateSettings estimate;
 };
 
 struct ReplayResult {

@@ -78,6 +78,18 @@ struct Fields<cachesim::CacheUnits> {
 };
 
 template <>
+struct Fields<cachesim::WindowSample> {
+    using S = cachesim::WindowSample;
+    static constexpr std::tuple all{Field{"blocks", &S::blocks},
+                                    Field{"indices", &S::indices},
+                                    Field{"windows", &S::windows},
+                                    Field{"timed_windows", &S::timed_windows},
+                                    Field{"widening", &S::widening},
+                                    Field{"unfilled_share", &S::unfilled_share},
+                                    Field{"last_cache_full", &S::last_cache_full}};
+};
+
+template <>
 struct Fields<cachesim::Origin> {
     using S = cachesim::Origin;
     static constexpr std::tuple all{Field{"scene", &S::scene},
@@ -87,7 +99,8 @@ struct Fields<cachesim::Origin> {
                                     Field{"thread_map", &S::thread_map},
                                     Field{"gpu", &S::gpu},
                                     Field{"spp", &S::spp},
-                                    Field{"caches", &S::caches}};
+                                    Field{"caches", &S::caches},
+                                    Field{"windows", &S::windows}};
 };
 
 template <>

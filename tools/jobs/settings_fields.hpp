@@ -104,9 +104,18 @@ struct Fields<SamplesJob> {
 };
 
 template <>
+struct Fields<EstimateSettings> {
+    using S = EstimateSettings;
+    static constexpr std::tuple all{Field{"windows", &S::windows}, Field{"target_error", &S::target_error},
+                                    Field{"time_budget", &S::time_budget}, Field{"window_count", &S::window_count},
+                                    Field{"baseline", &S::baseline}};
+};
+
+template <>
 struct Fields<ReplayJob> {
     using S = ReplayJob;
-    static constexpr std::tuple all{Field{"launches", &S::launches}, Field{"gpu", &S::gpu}, Field{"timed", &S::timed}};
+    static constexpr std::tuple all{Field{"launches", &S::launches}, Field{"gpu", &S::gpu}, Field{"timed", &S::timed},
+                                    Field{"estimate", &S::estimate}};
 };
 
 template <>

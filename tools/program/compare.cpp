@@ -7,6 +7,7 @@
 #include "tools/jobs/replay_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/estimate_options.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/inputs.hpp"
 #include "tools/program/options.hpp"
@@ -24,6 +25,7 @@ struct Options {
     std::vector<std::uint64_t> spp{64};
     std::vector<std::string> ks{""};  ///< empty: that of `sampling`
     SamplingOptions sampling;
+    EstimateOptions estimate;
     ReportOptions report;
     ThreadOptions threads;
 };
@@ -57,7 +59,11 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
         job.launches.sampling = o->sampling;
         job.launches.cases = cases_of(*o);
     }
-    return [o, command, job, gpus] {
+    std::string why_exact;
+    job.estimate = o->estimate.settings(*command, job.launches, why_exact);
+    job.estimate.baseline = o->report.baseline;
+    return [o, command, job, gpus, why_exact] {
+        if (!why_exact.empty()) warn(why_exact);
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
         else
@@ -82,6 +88,7 @@ void add_compare(Program& program) {
     add_spps(*command, o->spp, "sizes N of the sample set, separated by commas");
     o->threads.add(*command);
     o->report.add(*command, true);
+    o->estimate.add(*command);
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);
     o->sampling.add_execution(*command);

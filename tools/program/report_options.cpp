@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cachesim/report/profiler.hpp"
+#include "tools/jobs/baseline.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/options.hpp"
 #include "traces/error.hpp"
@@ -18,16 +19,6 @@ cachesim::GroupBy parse_by(const std::string& text) {
     if (text == "ray") return cachesim::GroupBy::ray;
     if (text == "object") return cachesim::GroupBy::object;
     throw UsageError(fmt::format("--by '{}'; expected one of: none, bounce, ray, object", text));
-}
-
-/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
-template <class Series>
-std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
-    const std::string usual = "cranley-patterson";
-    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
-    const bool has_usual =
-        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
-    return asked.empty() && has_usual ? usual : asked;
 }
 
 template <class Report>

@@ -42,6 +42,8 @@ enum class HashPurpose : std::uint32_t {
     point_numbers = 9,   ///< the random sequence; the free digits of pmj02
     mask_shift = 10,     ///< blue-noise: where the mask lies in each dimension
     mask_detail = 11,    ///< blue-noise: the digits below a mask's rank, and the mask's own first pattern
+    window_blocks = 12,  ///< which blocks of sample indices an estimate is of
+    window_places = 13,  ///< where in the picture their windows lie
 };
 
 /// A family of 2^96 random 32-bit words, picked by all 64 bits of a seed and by the purpose.

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <unordered_set>
 
-#include "tracer/sampling/hash.hpp"
+#include "tracer/sampling/random_stream.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -15,26 +14,6 @@ namespace raycache::tracer {
 namespace {
 
 constexpr std::uint64_t max_chosen = std::uint64_t{1} << 20;
-
-/// A stream of uniform integers from the counter-based hash.
-class RandomStream {
-public:
-    explicit RandomStream(std::uint64_t seed) : key_(seed, HashPurpose::sample_indices) {}
-
-    /// Uniform in 0 … bound-1, exactly: draws from the incomplete last block of 2^64 are thrown away.
-    std::uint64_t below(std::uint64_t bound) {
-        const std::uint64_t excess = (0 - bound) % bound;  // 2^64 mod bound
-        for (;;) {
-            const HashWords words = key_.words(counter_++, 0, 0);
-            const std::uint64_t draw = std::uint64_t{words[0]} << 32 | words[1];
-            if (draw <= std::numeric_limits<std::uint64_t>::max() - excess) return draw % bound;
-        }
-    }
-
-private:
-    HashKey key_;
-    std::uint32_t counter_ = 0;
-};
 
 /// Another decorrelation, with one pair of dimensions left to `random`.
 class IndependentPair final : public Decorrelation {
@@ -124,7 +103,7 @@ std::vector<std::uint32_t> choose_sample_indices(std::uint64_t spp, std::uint64_
     }
     // R. W. Floyd's subset algorithm (J. Bentley, "Programming Pearls: a sample of brilliance", CACM 30(9), 1987):
     // every subset is equally likely, with `count` draws however large spp is.
-    RandomStream random(seed);
+    RandomStream random(seed, HashPurpose::sample_indices);
     std::unordered_set<std::uint32_t> taken;
     taken.reserve(count);
     for (std::uint64_t last = spp - count; last < spp; ++last) {

@@ -1,8 +1,10 @@
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <type_traits>
 
 namespace raycache::cachesim {
 
@@ -61,6 +63,17 @@ TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
 
 TimedStatistics& TimedStatistics::operator-=(const TimedStatistics& before) {
     for_each_counter(*this, before, take_away);
+    return *this;
+}
+
+TimedStatistics& TimedStatistics::operator*=(double launches) {
+    for_each_counter(*this, *this, [launches](auto& mine, const auto&) {
+        const double product = static_cast<double>(mine) * launches;
+        if constexpr (std::is_integral_v<std::remove_reference_t<decltype(mine)>>)
+            mine = static_cast<std::uint64_t>(std::llround(product));
+        else
+            mine = product;
+    });
     return *this;
 }
 

@@ -66,6 +66,8 @@ struct TimedStatistics {
     TimedStatistics& operator+=(const TimedStatistics&);
     /// What was counted since: of `before`, an earlier state of the same counters. Leaves what is no counter.
     TimedStatistics& operator-=(const TimedStatistics& before);
+    /// So many launches like this one: counters rounded to whole numbers.
+    TimedStatistics& operator*=(double launches);
 };
 
 }  // namespace raycache::cachesim

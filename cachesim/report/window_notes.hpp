@@ -1,0 +1,35 @@
+// What a reader of estimates from windows must know of them.
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cachesim/report/origin.hpp"
+
+namespace raycache::cachesim {
+
+/// "what is estimated, from what, and what the intervals cover"
+std::string window_note(const WindowSample&);
+/// Of GPUs whose last cache holds the scene: "…: DRAM bytes are at most those shown".
+std::string unfilled_note(const std::string& gpus);
+
+/// Calls add(note) for each, once.
+template <class Row, class Add>
+void note_windows(const std::vector<Row>& rows, const Add& add) {
+    std::vector<std::string> unfilled;
+    bool said = false;
+    for (const Row& row : rows) {
+        if (!row.windows) continue;
+        if (!std::exchange(said, true)) add(window_note(*row.windows));
+        if (!row.windows->last_cache_full && std::find(unfilled.begin(), unfilled.end(), row.gpu) == unfilled.end())
+            unfilled.push_back(row.gpu);
+    }
+    if (!unfilled.empty()) add(unfilled_note(fmt::format("{}", fmt::join(unfilled, ", "))));
+}
+
+}  // namespace raycache::cachesim

@@ -1,0 +1,41 @@
+// A replay of windows until the answer is certain enough: what compare, explain and sweep ask unless they are told to
+// replay whole launches.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/jobs/launches.hpp"
+#include "tools/jobs/replay_launches.hpp"
+#include "tools/jobs/windows/window_plan.hpp"
+
+namespace raycache::tools {
+
+struct EstimateSettings {
+    bool windows = false;  ///< else whole launches, each from cold caches
+    /// Half width of the 95 % interval of each ratio to the baseline (of each mean where nothing is compared), over
+    /// it: 0 … 1. In time, of speed-ups alone; else of bytes per ray of every level.
+    double target_error = 0.05;
+    double time_budget = 0;          ///< seconds, after which no further blocks are begun; 0: none
+    std::uint64_t window_count = 0;  ///< so many of each strategy, whatever the error; 0: by the two above
+    std::string baseline;            ///< what target_error is about; empty: cranley-patterson where it is compared
+
+    /// Throws UsageError for values out of range.
+    void check() const;
+};
+
+struct Estimated {
+    Subject subject;
+    Predicted result;  ///< times: only if asked for
+};
+
+/// Throws UsageError for traces, wavefronts and settings that make no sense; else as Launches does. The same result for
+/// any number of threads, unless there is a time budget.
+Estimated estimate(const LaunchSettings&, const EstimateSettings&, const std::vector<cachesim::Gpu>&, bool timed,
+                   Observer&, const FileNames& outputs);
+
+/// Whether all of it can be estimated from windows: a scene, and megakernels.
+bool has_windows(const LaunchSettings&);
+
+}  // namespace raycache::tools

@@ -1,0 +1,242 @@
+#include "tools/jobs/windows/window_replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "cachesim/replay/replay.hpp"
+#include "cachesim/replay/timed/timed_replay.hpp"
+#include "tools/jobs/windows/work_count.hpp"
+
+namespace raycache::tools {
+namespace {
+
+using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
+
+/// The launches of a block one after the other, round and round: warps without an end.
+class WarpStream {
+public:
+    WarpStream(const tracer::Capture& capture, std::uint32_t first_launch, std::uint32_t launches)
+        : capture_(capture),
+          worker_(capture.make_worker()),
+          first_launch_(first_launch),
+          launches_(launches),
+          warps_(capture.header().warps_per_launch) {}
+
+    /// The number in the stream of a place, in its first round.
+    std::uint64_t number(const WindowPlace& place) const { return std::uint64_t{place.index} * warps_ + place.warp; }
+    traces::WarpTrace trace(std::uint64_t number) {
+        traces::WarpTrace warp;
+        const auto launch = static_cast<std::uint32_t>(number / warps_ % launches_);
+        capture_.trace_warp(*worker_, first_launch_ + launch, static_cast<std::uint32_t>(number % warps_), warp);
+        return warp;
+    }
+    std::uint32_t warps() const { return warps_; }  ///< of a launch
+    std::uint64_t round() const { return std::uint64_t{launches_} * warps_; }
+
+private:
+    const tracer::Capture& capture_;
+    std::unique_ptr<tracer::Capture::Worker> worker_;
+    std::uint32_t first_launch_, launches_, warps_;
+};
+
+/// A replay that is told which warps to count.
+template <class Replay>
+class WindowedReplay {
+public:
+    /// `windows`: how many it takes, from the first on.
+    WindowedReplay(Replay&& replay, std::uint32_t wave, const WindowSizes& sizes, std::uint32_t windows)
+        : replay_(std::move(replay)),
+          wave_(wave),
+          warm_up_(part_of_wave(sizes.warm_up_waves)),
+          counted_(part_of_wave(sizes.counted_waves)),
+          windows_(windows) {
+        replay_.count_until_here();
+    }
+
+    /// Warps of a window, from the first that is counted.
+    std::int64_t first() const { return -warm_up_; }
+    /// Behind the last window a wave keeps the GPU busy. Behind the others the next warm-up does.
+    std::int64_t end(std::uint32_t window) const { return counted_ + (window + 1 == windows_ ? wave_ : 0); }
+
+    bool wants(std::uint32_t window, std::int64_t offset) const {
+        return window < windows_ && offset >= first() && offset < end(window);
+    }
+    void push(const WarpPointer& warp, std::uint32_t window, std::int64_t offset) {
+        if (!wants(window, offset)) return;
+        if (offset == first() || offset == counted_) replay_.count_until_here();
+        if (offset == 0) replay_.count_from_here();
+        replay_.push(warp);
+    }
+    Replay& replay() { return replay_; }
+
+private:
+    std::int64_t part_of_wave(double waves) const {
+        return std::max<std::int64_t>(1, std::llround(waves * static_cast<double>(wave_)));
+    }
+
+    Replay replay_;
+    std::int64_t wave_, warm_up_, counted_;
+    std::uint32_t windows_;
+};
+
+/// The replays of one GPU.
+class GpuWindows {
+public:
+    GpuWindows(const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
+               const WindowSizes& sizes, bool timed)
+        : full_share_(sizes.unfilled_share),
+          wave_(wave_warps(gpu)),
+          counted_(cachesim::Replay(gpu, regions, sample), wave_, sizes, sizes.windows) {
+        if (timed)
+            timed_.emplace(cachesim::TimedReplay(gpu, regions, sample), wave_, sizes,
+                           std::min(sizes.timed_windows, sizes.windows));
+    }
+
+    std::uint32_t wave() const { return wave_; }
+
+    bool is_full() const { return unfilled_share_ < full_share_; }
+    void fill(const WarpPointer& warp) { counted_.replay().push(warp); }
+    void end_wave() { note_fills(); }
+
+    std::int64_t first() const { return counted_.first(); }
+    std::int64_t end(std::uint32_t window) const {
+        return std::max(counted_.end(window), timed_ ? timed_->end(window) : 0);
+    }
+    bool wants(std::uint32_t window, std::int64_t offset) const {
+        return counted_.wants(window, offset) || (timed_ && timed_->wants(window, offset));
+    }
+    void push(const WarpPointer& warp, std::uint32_t window, std::int64_t offset) {
+        counted_.push(warp, window, offset);
+        if (timed_) timed_->push(warp, window, offset);
+    }
+
+    BlockResult finish() {
+        BlockResult result;
+        result.counts = counted_.replay().finish();
+        if (!is_full()) note_fills();
+        result.unfilled_share = unfilled_share_;
+        if (timed_) result.times = timed_->replay().finish();
+        return result;
+    }
+
+private:
+    /// Since the last call.
+    void note_fills() {
+        const cachesim::LastLevelFills now = counted_.replay().last_level_fills();
+        const std::uint64_t misses = now.line_misses - before_.line_misses;
+        const std::uint64_t empty = now.of_empty_ways - before_.of_empty_ways;
+        unfilled_share_ = misses == 0 ? 0 : static_cast<double>(empty) / static_cast<double>(misses);
+        before_ = now;
+    }
+
+    double full_share_;
+    std::uint32_t wave_;
+    WindowedReplay<cachesim::Replay> counted_;
+    std::optional<WindowedReplay<cachesim::TimedReplay>> timed_;
+    cachesim::LastLevelFills before_;
+    double unfilled_share_ = 1;
+};
+
+/// Returns the warps that it traced.
+std::uint64_t count_work(WarpStream& stream, const BlockPlan& plan, const WindowSizes& sizes, WorkCount& work) {
+    const std::uint32_t group = std::min(sizes.work_warps, stream.warps());
+    for (const WindowPlace& place : plan.work)
+        for (std::uint32_t i = 0; i < group; ++i) work.add(stream.trace(stream.number(place) + i));
+    return std::uint64_t{group} * plan.work.size();
+}
+
+/// One SM as if it were alone with its share of the launch: of every `sms` CTAs the first, as many before the counted
+/// ones as it holds at once. What its own caches do does not depend on the others.
+cachesim::LaunchStatistics replay_sm(WarpStream& stream, const BlockPlan& plan, const cachesim::Gpu& gpu,
+                                     const std::vector<traces::Region>& regions) {
+    cachesim::Gpu one = gpu;
+    one.sms = 1;
+    const std::uint32_t slots = std::max(1U, gpu.warps_per_sm / gpu.warps_per_cta);
+    const std::uint64_t next = std::uint64_t{gpu.sms} * gpu.warps_per_cta;  // warps from one of its CTAs to the next
+    const std::uint64_t ahead = (slots * next / stream.round() + 1) * stream.round();
+    const std::size_t count = std::max<std::size_t>(1, plan.sm_windows.size() / slots);
+    cachesim::Replay replay(one, regions, plan.first);
+    replay.count_until_here();
+    for (std::size_t w = 0; w <= count; ++w) {  // one more, so that nothing counted drains
+        const std::uint64_t begin = stream.number(plan.sm_windows[w % count]) + ahead - slots * next;
+        for (std::uint32_t cta = 0; cta < (w < count ? 2 : 1) * slots; ++cta) {
+            if (cta == slots) replay.count_from_here();
+            for (std::uint32_t i = 0; i < gpu.warps_per_cta; ++i)
+                replay.push(std::make_shared<const traces::WarpTrace>(stream.trace(begin + cta * next + i)));
+        }
+        replay.count_until_here();
+    }
+    return replay.finish();
+}
+
+void fill_caches(WarpStream& stream, const BlockPlan& plan, std::vector<GpuWindows>& gpus) {
+    for (const WindowPlace& place : plan.fills) {
+        std::uint32_t longest = 0;
+        for (const GpuWindows& gpu : gpus)
+            if (!gpu.is_full()) longest = std::max(longest, gpu.wave());
+        for (std::uint32_t i = 0; i < longest; ++i) {
+            const auto warp = std::make_shared<const traces::WarpTrace>(stream.trace(stream.number(place) + i));
+            for (GpuWindows& gpu : gpus)
+                if (!gpu.is_full() && i < gpu.wave()) gpu.fill(warp);
+        }
+        for (GpuWindows& gpu : gpus)
+            if (!gpu.is_full()) gpu.end_wave();
+    }
+}
+
+void replay_windows(WarpStream& stream, const BlockPlan& plan, std::vector<GpuWindows>& gpus) {
+    std::int64_t first = 0;
+    for (const GpuWindows& gpu : gpus) first = std::min(first, gpu.first());
+    // Where a warm-up is longer than the picture, it takes rounds through the block.
+    const std::uint64_t ahead = (static_cast<std::uint64_t>(-first) / stream.round() + 1) * stream.round();
+    for (std::uint32_t w = 0; w < plan.windows.size(); ++w) {
+        std::int64_t end = 0;
+        for (const GpuWindows& gpu : gpus) end = std::max(end, gpu.end(w));
+        const std::uint64_t begin = stream.number(plan.windows[w]) + ahead;
+        for (std::int64_t offset = first; offset < end; ++offset) {
+            const auto wants = [&](const GpuWindows& gpu) { return gpu.wants(w, offset); };
+            if (std::none_of(gpus.begin(), gpus.end(), wants)) continue;
+            const auto number = static_cast<std::uint64_t>(static_cast<std::int64_t>(begin) + offset);
+            const auto warp = std::make_shared<const traces::WarpTrace>(stream.trace(number));
+            for (GpuWindows& gpu : gpus) gpu.push(warp, w, offset);
+        }
+    }
+}
+
+}  // namespace
+
+std::uint32_t wave_warps(const cachesim::Gpu& gpu) {
+    return gpu.sms * std::max(1U, gpu.warps_per_sm / gpu.warps_per_cta) * gpu.warps_per_cta;
+}
+
+std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint32_t first_launch,
+                                      const WindowPlan& windows, const BlockPlan& plan, const WindowSizes& sizes,
+                                      const std::vector<cachesim::Gpu>& gpus, bool timed) {
+    WarpStream stream(capture, first_launch, windows.launches());
+    const auto& regions = capture.header().regions;
+
+    std::vector<std::uint32_t> widths;
+    for (const cachesim::Gpu& gpu : gpus)
+        if (gpu.simd_width != traces::warp_lanes) widths.push_back(gpu.simd_width);
+    WorkCount work(regions, widths);
+    const std::uint64_t traced = count_work(stream, plan, sizes, work);
+
+    std::vector<GpuWindows> replays;
+    replays.reserve(gpus.size());
+    for (const cachesim::Gpu& gpu : gpus) replays.emplace_back(gpu, regions, plan.first, sizes, timed);
+    fill_caches(stream, plan, replays);
+    replay_windows(stream, plan, replays);
+
+    const double scale = static_cast<double>(stream.warps()) / static_cast<double>(traced);
+    std::vector<BlockResult> results;
+    for (std::size_t g = 0; g < gpus.size(); ++g) {
+        BlockResult& result = results.emplace_back(replays[g].finish());
+        result.counts.groups = work.launch(replay_sm(stream, plan, gpus[g], regions), result.counts, gpus[g], scale);
+        if (timed) work.scale(result.times, scale);
+    }
+    return results;
+}
+
+}  // namespace raycache::tools

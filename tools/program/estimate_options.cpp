@@ -1,0 +1,80 @@
+#include "tools/program/estimate_options.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "tools/jobs/numbers.hpp"
+#include "traces/error.hpp"
+
+namespace raycache::tools {
+namespace {
+
+constexpr const char* window_resolution = "1920x1080";
+
+bool is_given(const Command& command, const char* name) {
+    const Option* option = command.find_option(name);
+    return option && option->given();
+}
+
+}  // namespace
+
+double parse_percentage(const std::string& text, const std::string& what) {
+    const std::string expected = "a percentage above 0 and at most 100 with its sign, such as 2%";
+    std::string number = text;
+    if (number.empty() || number.back() != '%')
+        throw UsageError(fmt::format("{} '{}': expected {}", what, text, expected));
+    number.pop_back();
+    while (!number.empty() && number.back() == ' ') number.pop_back();
+    const double percent = read_real(number, what, {std::numeric_limits<double>::min(), 100}, expected);
+    return percent / 100;
+}
+
+void EstimateOptions::add(Command& command) {
+    command.group("Certainty", true);
+    command
+        .add_option("--target-error", target_error,
+                    "stop when the 95 % interval of every ratio to the baseline is that narrow (with --timed: of every "
+                    "speed-up)")
+        ->check([](std::string& word) { parse_percentage(word, "--target-error"); })
+        ->type_name("PERCENT")
+        ->excludes({"--windows", "--exact", "--trace-samples"});
+    command
+        .add_option("--time-budget", time_budget,
+                    "stop after so many seconds, whatever the interval; results then depend on the machine's speed")
+        ->range(0.0, 1e9)
+        ->type_name("SECONDS")
+        ->default_text("")
+        ->excludes({"--windows", "--exact", "--trace-samples"});
+    command
+        .add_option("--windows", windows,
+                    "so many windows of each strategy, whatever the interval: runs of neighbouring warps at random "
+                    "places of random sample indices")
+        ->range(std::uint64_t{2}, std::uint64_t{4096})
+        ->default_text("")
+        ->excludes({"--exact", "--trace-samples"});
+    command.add_flag("--exact", exact,
+                     "whole launches instead of windows: --trace-samples of them, each from cold caches to its last "
+                     "warp, at 512x512 by default");
+    command.group("");
+}
+
+EstimateSettings EstimateOptions::settings(const Command& command, LaunchSettings& launches,
+                                           std::string& why_exact) const {
+    EstimateSettings settings;
+    if (exact || is_given(command, "--trace-samples") || launches.of_traces()) return settings;
+    if (is_given(command, "--counters")) return settings;
+    if (!has_windows(launches)) {
+        why_exact = "a wavefront has no steady state to take windows from: whole launches are replayed";
+        return settings;
+    }
+    settings.windows = true;
+    settings.target_error = parse_percentage(target_error, "--target-error");
+    settings.time_budget = time_budget;
+    settings.window_count = windows;
+    if (!is_given(command, "--resolution")) launches.sampling.resolution = window_resolution;
+    settings.check();
+    return settings;
+}
+
+}  // namespace raycache::tools
