@@ -52,6 +52,8 @@ struct Report {
     /// Likewise, whether any row writes to DRAM or sorts.
     bool has_wavefront() const;
     bool has(Presence) const;
+    /// Whether rows are estimates from windows: all are, or none.
+    bool has_windows() const { return !rows.empty() && rows.front().windows.has_value(); }
 };
 
 /// What a sentence calls a row: "micro-jitter, N 64, gtx-980-ti", and what else tells it from others.

@@ -10,6 +10,7 @@
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/verdict.hpp"
+#include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
 
@@ -108,7 +109,8 @@ std::string legend_of(const Report& report, bool compared) {
     for (const std::size_t i : columns_of(report)) {
         const TrafficFigure& figure = traffic_figures[i];
         if (!figure.legend || figure.is_compared() != compared) continue;
-        const std::string words = fmt::format(fmt::runtime(figure.legend), report.baseline);
+        const bool warm = figure.legend == bytes_legend && report.has_windows();
+        const std::string words = warm ? warm_bytes_legend : fmt::format(fmt::runtime(figure.legend), report.baseline);
         if (entries.empty() || entries.back().words != words)
             entries.push_back({figure.subject, words});
         else if (entries.back().subjects != figure.subject)
@@ -121,8 +123,9 @@ std::string legend_of(const Report& report, bool compared) {
 
 std::string legend(const Report& report) {
     const std::string ratios = legend_of(report, true);
-    std::string text = fmt::format("{}; ±: half width of the 95 % confidence interval over sample indices{}{}.",
-                                   legend_of(report, false), ratios.empty() ? "" : "; ", ratios);
+    std::string text =
+        fmt::format("{}; ±: half width of the 95 % confidence interval over {}{}{}.", legend_of(report, false),
+                    units_name(report.has_windows()), ratios.empty() ? "" : "; ", ratios);
     if (report.has_wavefront())
         text +=
             " Wavefronts: DRAM B/ray includes what kernels write to it and what sorting rays reads and writes; both "

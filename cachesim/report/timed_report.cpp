@@ -122,6 +122,7 @@ std::optional<Verdict> verdict_of(const TimedReport& report, std::size_t row) {
     if (!report.traffic.rows.empty()) d = difference_of(report.traffic.rows[row]);
     const TimedRow& timed = report.rows[row];
     d.speed_up = timed["speed_up"];
+    d.windows = timed.windows;
     d.traced = timed.launches.size();
     d.spp = timed.spp;
     if (!d.speed_up && d.bytes.empty()) return std::nullopt;

@@ -10,6 +10,7 @@
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "cachesim/report/verdict.hpp"
+#include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
 
@@ -116,16 +117,19 @@ std::string traffic_table(const TimedReport& report, const Tables& tables, std::
 }
 
 std::string legend(const TimedReport& report) {
+    const bool windows = !report.rows.empty() && report.rows.front().windows;
     return paragraph(
         "speed-up: cycles of " + (report.baseline.empty() ? std::string("a baseline") : report.baseline) +
         " over those of the row. occupancy: share of the slots for warps that is taken, on average. L1 %: hits of "
         "load requests, as Nsight Compute counts (l1tex__t_sector_hit_rate), requests for a sector on its way "
         "included; merged %: the share of all requests that are such. L2 %: the same of what L1 asks. B/ray and "
-        "their ratios: counted by the functional replay, without time, of launches that begin with cold caches. % "
-        "of "
+        "their ratios: counted by the functional replay, without time, of " +
+        (windows ? "windows with warm caches" : "launches that begin with cold caches") +
+        ". % of "
         "a resource: of its time; L1 tags and L1 data are what the L1 port does, MSHRs registers for sectors on "
         "their way. L2 slices, L2 GB/s: of the level that all SMs share. visit latency: cycles from the first load "
-        "of a visit to its last data. ±: half width of the 95 % confidence interval over sample indices.");
+        "of a visit to its last data. ±: half width of the 95 % confidence interval over " +
+        units_name(windows) + ".");
 }
 
 }  // namespace

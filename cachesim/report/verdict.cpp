@@ -62,11 +62,23 @@ std::string without_interval(const Difference& d, const std::vector<Bytes>& byte
     for (const Bytes& b : bytes)
         parts.push_back(change_of(b.ratio) + ' ' + b.name +
                         (b.level == bytes.front().level ? cause_text(d.factors, b.level) : ""));
+    if (d.windows) return list(parts, "; ") + "; from one block, so without an interval: raise --windows";
     return list(parts, "; ") + "; from one sample index, so without an interval: raise --trace-samples";
+}
+
+/// The end of the interval that is further from 1: "2.1 %".
+std::string at_most(const Estimate& ratio) {
+    return percent(std::fabs(ratio.mean - 1) + ratio.half_width.value_or(0)) + " %";
 }
 
 std::string nothing_certain(const Difference& d, const std::vector<Bytes>& bytes) {
     std::vector<std::string> parts;
+    if (d.windows) {
+        if (d.speed_up) parts.push_back(at_most(*d.speed_up) + " in time (predicted)");
+        for (const Bytes& b : bytes)
+            if (b.ratio.half_width) parts.push_back(at_most(b.ratio) + " in " + b.name);
+        return "no difference above " + list(parts, ", ") + "; to see a smaller one, " + remedy(d);
+    }
     if (d.speed_up) parts.push_back(fast_range(*d.speed_up));
     for (const Bytes& b : bytes)
         if (b.ratio.half_width) parts.push_back(range_of(b.ratio) + ' ' + b.name);
@@ -90,6 +102,7 @@ Difference difference_of(const Row& row) {
         if (row[bytes.ratio]) d.bytes.push_back(*row[bytes.ratio]);
     d.factors = row.factors;
     d.dram_compulsory_share = row["dram_compulsory_share"]->mean;
+    d.windows = row.windows;
     d.traced = row.samples.size();
     d.spp = row.spp;
     return d;
@@ -135,6 +148,10 @@ std::string remedy(const Difference& d) {
         if (ratio.half_width && ratio.mean != 1)
             least = std::min(least, std::pow(*ratio.half_width / (ratio.mean - 1), 2));
     const double wanted = std::ceil(least * static_cast<double>(d.traced)) + 1;
+    if (d.windows)
+        return fmt::format(
+            "ask for a smaller --target-error{}",
+            std::isfinite(wanted) ? fmt::format(", or --windows {:.0f}", wanted * d.windows->windows) : "");
     if (wanted <= static_cast<double>(d.spp))
         return fmt::format("raise --trace-samples from {} to about {:.0f}", d.traced, wanted);
     if (d.traced < d.spp)

@@ -24,8 +24,9 @@ struct Difference {
     std::vector<Estimate> bytes;
     std::optional<Factors> factors;
     double dram_compulsory_share = 0;  ///< of the strategy; see Row
-    std::size_t traced = 0;            ///< sample indices
-    std::uint64_t spp = 0;             ///< of so many
+    std::size_t traced = 0;            ///< sample indices; blocks of them where `windows` says so
+    std::optional<WindowSample> windows{};
+    std::uint64_t spp = 0;  ///< of so many
 };
 
 struct Verdict {
@@ -61,7 +62,7 @@ std::string range_of(const Estimate& ratio);
 /// ", most by SIMT efficiency, x0.818 ±0.020 (fewer warp accesses per step: less divergence)"; nothing without a cause.
 /// Of the traffic below level `level`, from 0.
 std::string cause_text(const std::optional<Factors>&, std::size_t level);
-/// "raise --trace-samples from 4 to about 20": what would make the surest of these ratios certain.
+/// "raise --trace-samples from 4 to about 20": what would make the surest of these ratios certain. Of windows, how many.
 std::string remedy(const Difference&);
 
 }  // namespace raycache::cachesim

@@ -13,6 +13,11 @@
 
 namespace raycache::cachesim {
 
+/// What intervals are taken over.
+inline const char* units_name(bool windows) { return windows ? "blocks of sample indices" : "sample indices"; }
+/// What bytes are, where they are not those of launches from cold caches.
+inline constexpr const char* warm_bytes_legend = "bytes read in the steady state, caches warm";
+
 /// "what is estimated, from what, and what the intervals cover"
 std::string window_note(const WindowSample&);
 /// Of GPUs whose last cache holds the scene: "…: DRAM bytes are at most those shown".

@@ -7,14 +7,14 @@
 namespace raycache::tools {
 namespace {
 
+constexpr double trace_ray = 1.8e-6, replay_ray = 2e-6, timed_ray = 40e-6;  ///< seconds
+
 /// Of a path in a scene that is neither open nor closed: camera ray, then bounce rays with their shadow rays.
-double rays_of(std::uint64_t paths, std::uint32_t bounces) {
-    return static_cast<double>(paths) * (1 + 1.25 * std::min(bounces, 16U));
-}
+double rays_of(double paths, std::uint32_t bounces) { return paths * (1 + 1.25 * std::min(bounces, 16U)); }
 
 double rays_of(const tracer::CaptureSettings& s) {
-    return rays_of(std::uint64_t{s.width} * s.height * std::min(s.trace_samples, s.strategy.samples.spp),
-                   s.paths.bounces);
+    const std::uint64_t paths = std::uint64_t{s.width} * s.height * std::min(s.trace_samples, s.strategy.samples.spp);
+    return rays_of(static_cast<double>(paths), s.paths.bounces);
 }
 
 }  // namespace
@@ -25,12 +25,19 @@ double load_cost(std::uint64_t file_bytes, std::uint64_t triangles) {
 
 double read_cost(std::uint64_t trace_bytes) { return 30e-9 * static_cast<double>(trace_bytes); }
 
-double render_cost(std::uint64_t paths, std::uint32_t bounces) { return 1.0e-6 * rays_of(paths, bounces); }
+double render_cost(std::uint64_t paths, std::uint32_t bounces) {
+    return 1.0e-6 * rays_of(static_cast<double>(paths), bounces);
+}
 
-double trace_cost(const tracer::CaptureSettings& settings) { return 1.8e-6 * rays_of(settings); }
+double trace_cost(const tracer::CaptureSettings& settings) { return trace_ray * rays_of(settings); }
 
 double replay_cost(const tracer::CaptureSettings& settings, bool timed) {
-    return (timed ? 40e-6 : 2e-6) * rays_of(settings);
+    return (timed ? timed_ray : replay_ray) * rays_of(settings);
+}
+
+double window_cost(std::uint32_t bounces, double traced, double replayed, double timed) {
+    return trace_ray * rays_of(traced, bounces) + replay_ray * rays_of(replayed, bounces) +
+           timed_ray * rays_of(timed, bounces);
 }
 
 double explain_cost(const tracer::CaptureSettings& settings, bool timed) {

@@ -12,7 +12,9 @@ double load_cost(std::uint64_t file_bytes, std::uint64_t triangles);  ///< readi
 double read_cost(std::uint64_t trace_bytes);                          ///< checking a trace
 double render_cost(std::uint64_t paths, std::uint32_t bounces);
 double trace_cost(const tracer::CaptureSettings&);
-double replay_cost(const tracer::CaptureSettings&, bool timed);   ///< through one GPU
+double replay_cost(const tracer::CaptureSettings&, bool timed);  ///< through one GPU
+/// Of so many paths: traced, and replayed through one GPU without and with time.
+double window_cost(std::uint32_t bounces, double traced, double replayed, double timed);
 double explain_cost(const tracer::CaptureSettings&, bool timed);  ///< of one of the two traces
 
 }  // namespace raycache::tools

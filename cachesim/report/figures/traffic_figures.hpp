@@ -44,6 +44,9 @@ constexpr TrafficFigure total(const char* key, const char* title, const char* un
             .presence = presence};
 }
 
+/// Of whole launches; windows are those of warm caches (window_notes.hpp).
+inline constexpr const char* bytes_legend = "bytes read, by launches that begin with cold caches";
+
 /// In the order of tables and files.
 inline constexpr TrafficFigure traffic_figures[] = {
     // Totals over all sample indices.
@@ -200,7 +203,7 @@ inline constexpr TrafficFigure traffic_figures[] = {
      .column = "L2->L1 B/ray",
      .interval = true,
      .subject = "B/ray",
-     .legend = "bytes read, by launches that begin with cold caches",
+     .legend = bytes_legend,
      .better = Better::lower,
      .page = true},
     {.key = "l3_bytes_per_ray",
@@ -212,7 +215,7 @@ inline constexpr TrafficFigure traffic_figures[] = {
      .column = "L3->L2 B/ray",
      .interval = true,
      .subject = "B/ray",
-     .legend = "bytes read, by launches that begin with cold caches",
+     .legend = bytes_legend,
      .better = Better::lower,
      .page = true,
      .presence = Presence::three_levels},
@@ -225,7 +228,7 @@ inline constexpr TrafficFigure traffic_figures[] = {
      .column = "DRAM B/ray",
      .interval = true,
      .subject = "B/ray",
-     .legend = "bytes read, by launches that begin with cold caches",
+     .legend = bytes_legend,
      .better = Better::lower,
      .page = true},
     {.key = "dram_compulsory_share",

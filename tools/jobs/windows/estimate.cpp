@@ -12,6 +12,7 @@
 
 #include "cachesim/report/verdict.hpp"
 #include "tools/jobs/baseline.hpp"
+#include "tools/jobs/costs.hpp"
 #include "tools/jobs/windows/window_replay.hpp"
 #include "tracer/sampling/pixel_place.hpp"
 #include "tracer/simt/thread_map.hpp"
@@ -121,6 +122,8 @@ public:
     std::vector<Json> subject() const;
 
 private:
+    static std::string stage_name(std::uint32_t end) { return fmt::format("windows of {} blocks", end); }
+    void expect(std::uint32_t begin, std::uint32_t end);
     void run_blocks(std::uint32_t end);
     Predicted series(double error) const;
     cachesim::Origin origin(std::size_t c, std::size_t g, double error) const;
@@ -153,11 +156,29 @@ void Estimator::warn_of_pictures() const {
     }
 }
 
+/// That these blocks are to come.
+void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
+    double paths = sizes_.work_groups * sizes_.work_warps, longest = 0, replayed = 0, timed = 0;
+    for (const cachesim::Gpu& gpu : gpus_) {
+        const double wave = wave_warps(gpu), windows = (sizes_.warm_up_waves + sizes_.counted_waves) * wave;
+        const double of_sms = 2.0 * sizes_.sm_windows * gpu.warps_per_cta;
+        const double of_gpu = sizes_.windows * windows + 3 * wave;
+        paths += of_sms;
+        longest = std::max(longest, of_gpu);
+        replayed += of_sms + of_gpu;
+        if (timed_) timed += sizes_.timed_windows * windows + wave;
+    }
+    const double count = traces::warp_lanes * (end - begin) * static_cast<double>(cases_.size());
+    const std::uint32_t bounces = cases_.front().capture->settings().paths.bounces;
+    observer_.expect(stage_name(end), timed_ ? Work::timed_replay : Work::replay,
+                     window_cost(bounces, (paths + longest) * count, replayed * count, timed * count));
+}
+
 void Estimator::run_blocks(std::uint32_t end) {
     const std::uint32_t begin = blocks_;
     const std::size_t tasks = (end - begin) * cases_.size();
     for (Case& c : cases_) c.blocks.resize(end);
-    const Stage stage(observer_, "windows", tasks, "blocks");
+    const Stage stage(observer_, stage_name(end), tasks, "blocks");
     tbb::parallel_for(
         std::size_t{0}, tasks,
         [&](std::size_t task) {
@@ -176,7 +197,9 @@ void Estimator::run_blocks(std::uint32_t end) {
 void Estimator::run() {
     warn_of_pictures();
     if (settings_.window_count != 0) {
-        run_blocks(static_cast<std::uint32_t>(settings_.window_count / sizes_.windows));
+        const auto blocks = static_cast<std::uint32_t>(settings_.window_count / sizes_.windows);
+        expect(0, blocks);
+        run_blocks(blocks);
         return;
     }
     using Clock = std::chrono::steady_clock;
@@ -185,10 +208,16 @@ void Estimator::run() {
     const bool budget = settings_.time_budget > 0;
     for (std::uint32_t end = budget ? 2 : first_look; end <= most_blocks; end *= 2) {
         const double before = seconds();
+        if (blocks_ == 0) expect(0, end);
         run_blocks(end);
         error_of_look_ /= 2;
         const Worst now = worst();
         if (now.error <= settings_.target_error) return;
+        // The half width falls with the square root of the blocks: those looks are still to come.
+        for (std::uint32_t next = 2 * end; next <= most_blocks; next *= 2) {
+            expect(next / 2, next);
+            if (now.error * std::sqrt(end / static_cast<double>(next)) <= settings_.target_error) break;
+        }
         const double last = seconds() - before;
         if (budget && seconds() + 2 * last > settings_.time_budget) {
             observer_.warn(

@@ -124,7 +124,7 @@ public:
 private:
     /// Since the last call.
     void note_fills() {
-        const cachesim::LastLevelFills now = counted_.replay().last_level_fills();
+        const cachesim::LineFills now = counted_.replay().last_level_fills();
         const std::uint64_t misses = now.line_misses - before_.line_misses;
         const std::uint64_t empty = now.of_empty_ways - before_.of_empty_ways;
         unfilled_share_ = misses == 0 ? 0 : static_cast<double>(empty) / static_cast<double>(misses);
@@ -135,7 +135,7 @@ private:
     std::uint32_t wave_;
     WindowedReplay<cachesim::Replay> counted_;
     std::optional<WindowedReplay<cachesim::TimedReplay>> timed_;
-    cachesim::LastLevelFills before_;
+    cachesim::LineFills before_;
     double unfilled_share_ = 1;
 };
 
