@@ -15,7 +15,7 @@ struct ReplayJob {
     LaunchSettings launches;
     GpuSettings gpu;
     bool timed = false;  ///< predict cycles, too
-    EstimateSettings estimate;
+    EstimateSettings estimate{};
 };
 
 struct ReplayResult {
