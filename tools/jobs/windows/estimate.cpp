@@ -166,7 +166,7 @@ void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
         paths += of_sms;
         longest = std::max(longest, of_gpu);
         replayed += of_sms + of_gpu;
-        if (timed_) timed += sizes_.timed_windows * windows + wave;
+        if (timed_) timed += (1 + sizes_.timed_windows * (sizes_.timed_warm_up_waves + sizes_.counted_waves)) * wave;
     }
     const double count = traces::warp_lanes * (end - begin) * static_cast<double>(cases_.size());
     const std::uint32_t bounces = cases_.front().capture->settings().paths.bounces;

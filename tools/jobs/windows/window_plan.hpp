@@ -18,16 +18,17 @@ namespace raycache::tools {
 /// How large everything is. The values are those that tools/bench found to need least time for a given error
 /// (docs/estimates.md).
 struct WindowSizes {
-    std::uint32_t indices = 64;       ///< of a block, at most
-    std::uint32_t work_groups = 256;  ///< of work_warps each, traced and not replayed
-    std::uint32_t work_warps = 8;     ///< neighbouring warps: a square of 16x16 pixels
-    std::uint32_t sm_windows = 128;   ///< of one SM: its CTAs alone; fewer where it holds several CTAs at once
-    std::uint32_t windows = 8;        ///< of the whole GPU
-    std::uint32_t timed_windows = 2;  ///< of these, in time
-    double warm_up_waves = 1;         ///< before each window, not counted
-    double counted_waves = 1;         ///< a wave: the warps that a GPU holds at once
-    std::uint32_t fill_waves = 8;     ///< at most, before the first window, until the last cache is full
-    double unfilled_share = 0.005;    ///< of the last cache's misses that find an empty way: below it, it is full
+    std::uint32_t indices = 64;        ///< of a block, at most
+    std::uint32_t work_groups = 256;   ///< of work_warps each, traced and not replayed
+    std::uint32_t work_warps = 8;      ///< neighbouring warps: a square of 16x16 pixels
+    std::uint32_t sm_windows = 128;    ///< of one SM: its CTAs alone; fewer where it holds several CTAs at once
+    std::uint32_t windows = 8;         ///< of the whole GPU
+    std::uint32_t timed_windows = 2;   ///< of these, in time
+    double warm_up_waves = 1;          ///< before each window, not counted
+    double timed_warm_up_waves = 0.5;  ///< of those in time
+    double counted_waves = 1;          ///< a wave: the warps that a GPU holds at once
+    std::uint32_t fill_waves = 8;      ///< at most, before the first window, until the last cache is full
+    double unfilled_share = 0.005;     ///< of the last cache's misses that find an empty way: below it, it is full
 };
 
 /// A warp in the stream of a block's launches.

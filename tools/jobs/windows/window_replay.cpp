@@ -45,20 +45,20 @@ private:
 template <class Replay>
 class WindowedReplay {
 public:
-    /// `windows`: how many it takes, from the first on.
-    WindowedReplay(Replay&& replay, std::uint32_t wave, const WindowSizes& sizes, std::uint32_t windows)
+    /// In warps. `windows`: how many it takes, from the first on. `tail`: behind the last of them.
+    WindowedReplay(Replay&& replay, double warm_up, double counted, std::uint32_t tail, std::uint32_t windows)
         : replay_(std::move(replay)),
-          wave_(wave),
-          warm_up_(part_of_wave(sizes.warm_up_waves)),
-          counted_(part_of_wave(sizes.counted_waves)),
+          warm_up_(std::max(1LL, std::llround(warm_up))),
+          counted_(std::max(1LL, std::llround(counted))),
+          tail_(tail),
           windows_(windows) {
         replay_.count_until_here();
     }
 
     /// Warps of a window, from the first that is counted.
     std::int64_t first() const { return -warm_up_; }
-    /// Behind the last window a wave keeps the GPU busy. Behind the others the next warm-up does.
-    std::int64_t end(std::uint32_t window) const { return counted_ + (window + 1 == windows_ ? wave_ : 0); }
+    /// Behind all but the last window the next warm-up keeps the GPU busy.
+    std::int64_t end(std::uint32_t window) const { return counted_ + (window + 1 == windows_ ? tail_ : 0); }
 
     bool wants(std::uint32_t window, std::int64_t offset) const {
         return window < windows_ && offset >= first() && offset < end(window);
@@ -72,12 +72,8 @@ public:
     Replay& replay() { return replay_; }
 
 private:
-    std::int64_t part_of_wave(double waves) const {
-        return std::max<std::int64_t>(1, std::llround(waves * static_cast<double>(wave_)));
-    }
-
     Replay replay_;
-    std::int64_t wave_, warm_up_, counted_;
+    std::int64_t warm_up_, counted_, tail_;
     std::uint32_t windows_;
 };
 
@@ -88,16 +84,23 @@ public:
                const WindowSizes& sizes, bool timed)
         : full_share_(sizes.unfilled_share),
           wave_(wave_warps(gpu)),
-          counted_(cachesim::Replay(gpu, regions, sample), wave_, sizes, sizes.windows) {
+          counted_(cachesim::Replay(gpu, regions, sample), sizes.warm_up_waves * wave_, sizes.counted_waves * wave_,
+                   wave_, sizes.windows) {
+        // In time a window ends when the CTA behind it begins, and nothing needs to run after that.
         if (timed)
-            timed_.emplace(cachesim::TimedReplay(gpu, regions, sample), wave_, sizes,
+            timed_.emplace(cachesim::TimedReplay(gpu, regions, sample), sizes.timed_warm_up_waves * wave_,
+                           sizes.counted_waves * wave_, gpu.warps_per_cta,
                            std::min(sizes.timed_windows, sizes.windows));
     }
 
     std::uint32_t wave() const { return wave_; }
 
     bool is_full() const { return unfilled_share_ < full_share_; }
-    void fill(const WarpPointer& warp) { counted_.replay().push(warp); }
+    /// `first`: of the first wave. It also brings the SMs of a timed replay out of step.
+    void fill(const WarpPointer& warp, bool first) {
+        counted_.replay().push(warp);
+        if (timed_ && first) timed_->replay().push(warp);
+    }
     void end_wave() { note_fills(); }
 
     std::int64_t first() const { return counted_.first(); }
@@ -117,7 +120,11 @@ public:
         result.counts = counted_.replay().finish();
         if (!is_full()) note_fills();
         result.unfilled_share = unfilled_share_;
-        if (timed_) result.times = timed_->replay().finish();
+        if (timed_) {
+            const auto& batches = timed_->replay().batches();
+            result.times = batches.front();
+            for (std::size_t b = 1; b < batches.size(); ++b) result.times += batches[b];
+        }
         return result;
     }
 
@@ -173,13 +180,14 @@ cachesim::LaunchStatistics replay_sm(WarpStream& stream, const BlockPlan& plan, 
 
 void fill_caches(WarpStream& stream, const BlockPlan& plan, std::vector<GpuWindows>& gpus) {
     for (const WindowPlace& place : plan.fills) {
+        const bool first = &place == &plan.fills.front();
         std::uint32_t longest = 0;
         for (const GpuWindows& gpu : gpus)
             if (!gpu.is_full()) longest = std::max(longest, gpu.wave());
         for (std::uint32_t i = 0; i < longest; ++i) {
             const auto warp = std::make_shared<const traces::WarpTrace>(stream.trace(stream.number(place) + i));
             for (GpuWindows& gpu : gpus)
-                if (!gpu.is_full() && i < gpu.wave()) gpu.fill(warp);
+                if (!gpu.is_full() && i < gpu.wave()) gpu.fill(warp, first);
         }
         for (GpuWindows& gpu : gpus)
             if (!gpu.is_full()) gpu.end_wave();
