@@ -113,7 +113,7 @@ def contents(comparison, quality, picture, command):
     found = {
         "scenes": ", ".join(distinct(r["scene"] for r in comparison.rows)),
         "sequences": ", ".join(distinct(r["sequence"] for r in comparison.rows)),
-        "samples": len(comparison.rows[0]["samples"]), "timed": comparison.timed, "grouped": comparison.grouped,
+        "samples": len(comparison.rows[0]["samples"]), "windows": comparison.rows[0].get("windows"), "timed": comparison.timed, "grouped": comparison.grouped,
         "compares": compares, "baseline": comparison.baseline, "notes": comparison.notes, "command": command,
         "best": best_of(comparison, quality) if compares else None, "verdicts": verdicts(comparison) if compares else [],
         "columns": [{"lines": figure["title"].split(" ", 1), "words": figure["definition"]} for figure in columns],

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "tools/jobs/numbers.hpp"
 #include "traces/error.hpp"
 
@@ -20,13 +18,21 @@ bool is_given(const Command& command, const char* name) {
 }  // namespace
 
 double parse_percentage(const std::string& text, const std::string& what) {
-    const std::string expected = "a percentage above 0 and at most 100 with its sign, such as 2%";
+    const auto refuse = [&] {
+        return UsageError(fmt::format(
+            "{} '{}': expected a percentage above 0 and at most 100 with its sign, such as 2%", what, text));
+    };
     std::string number = text;
-    if (number.empty() || number.back() != '%')
-        throw UsageError(fmt::format("{} '{}': expected {}", what, text, expected));
+    if (number.empty() || number.back() != '%') throw refuse();
     number.pop_back();
     while (!number.empty() && number.back() == ' ') number.pop_back();
-    const double percent = read_real(number, what, {std::numeric_limits<double>::min(), 100}, expected);
+    double percent = 0;
+    try {
+        percent = read_real(number, what, {});
+    } catch (const UsageError&) {
+        throw refuse();
+    }
+    if (!(percent > 0 && percent <= 100)) throw refuse();
     return percent / 100;
 }
 
@@ -62,7 +68,16 @@ void EstimateOptions::add(Command& command) {
 EstimateSettings EstimateOptions::settings(const Command& command, LaunchSettings& launches,
                                            std::string& why_exact) const {
     EstimateSettings settings;
-    if (exact || is_given(command, "--trace-samples") || launches.of_traces()) return settings;
+    if (launches.of_traces()) {
+        for (const char* option : {"--target-error", "--time-budget", "--windows"})
+            if (is_given(command, option))
+                throw UsageError(fmt::format(
+                    "{} beside traces; expected a scene: a trace has whole launches and no windows of other sample "
+                    "indices",
+                    option));
+        return settings;
+    }
+    if (exact || is_given(command, "--trace-samples")) return settings;
     if (is_given(command, "--counters")) return settings;
     if (!has_windows(launches)) {
         why_exact = "a wavefront has no steady state to take windows from: whole launches are replayed";

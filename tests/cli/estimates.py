@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Estimates of the steady state from windows: how compare is told how certain to be, and what it says of that."""
+from support import LAUNCHES, PICTURE, SCENE, ProgramTest, main
+
+# Two SMs: windows are short.
+GPU = ["--gpu", "rtx-3070", "--set", "sms=2"]
+STRATEGIES = ["--strategy", "cranley-patterson,micro-jitter", "--k", "1"]
+COMPARE = ["compare", *SCENE, *PICTURE, "--spp", "1024", *STRATEGIES, *GPU]
+
+
+class Estimates(ProgramTest):
+    def test_windows_are_the_default_and_whole_launches_are_exact(self):
+        self.assertIn("estimates of the steady state", self.succeeds(*COMPARE, "--windows", "4").text)
+        exact = self.succeeds("compare", *SCENE, *PICTURE, "--spp", "16", *STRATEGIES, *GPU, "--exact", "--json")
+        self.assertEqual(len(exact.json["rows"][0]["samples"]), 8)
+        chosen = self.succeeds("compare", *SCENE, *LAUNCHES, "--spp", "16", *STRATEGIES, *GPU, "--json")
+        self.assertEqual(len(chosen.json["rows"][0]["samples"]), 2)
+        for whole in (exact, chosen):
+            self.assertNotIn("steady state", whole.text)
+
+    def test_the_picture_is_a_real_one_unless_a_resolution_is_given(self):
+        settings = self.succeeds("compare", *SCENE, "--spp", "1024", "--strategy", "coherent", *GPU, "--windows", "2",
+                                 "--json").json["traces"][0]
+        self.assertEqual(settings["resolution"], "1920x1080")
+        self.assertLess(1, len(settings["samples"]))
+
+    def test_a_target_is_met_where_nothing_is_said(self):
+        rows = self.succeeds(*COMPARE, "--target-error", "20%", "--json").json["rows"]
+        for key in ("l2_bytes_ratio", "dram_bytes_ratio"):
+            ratio = rows[1][key]
+            self.assertLessEqual(ratio["half_width_95"], 0.2 * ratio["mean"])
+
+    def test_more_windows_narrow_the_interval(self):
+        def width(windows):
+            return self.succeeds(*COMPARE, "--windows", windows, "--json").json["rows"][1]["l2_bytes_ratio"]["half_width_95"]
+        self.assertLess(width(128), width(16))
+
+    def test_threads_do_not_change_an_estimate(self):
+        one, two = (self.succeeds(*COMPARE, "--timed", "--windows", "8", "--json", "--threads", n).report for n in (1, 2))
+        self.assertEqual(one, two)
+
+    def test_the_same_strategy_is_exactly_as_fast_as_itself(self):
+        rows = self.succeeds("compare", *SCENE, *PICTURE, "--spp", "64", "--strategy", "micro-jitter,micro-jitter@tile",
+                             "--baseline", "micro-jitter", *GPU, "--timed", "--windows", "8", "--json").json["rows"]
+        self.assertEqual((rows[1]["speed_up"]["mean"], rows[1]["speed_up"]["half_width_95"]), (1, 0))
+
+    def test_a_time_budget_ends_the_estimate_and_says_how_far_it_came(self):
+        result = self.warns(*COMPARE, "--target-error", "0.01%", "--time-budget", "0.001")
+        self.assertIn("the time budget of 0.001 s ends at 2 blocks", result.stderr)
+        self.assertIn("2 blocks", result.text)
+
+    def test_one_sample_and_one_pixel_are_estimated_too(self):
+        result = self.warns("compare", *SCENE, "--resolution", "1x1", "--spp", "1", "--strategy",
+                            "cranley-patterson,coherent", *GPU, "--windows", "4")
+        self.assertIn("holds 24 at once", result.stderr)
+
+    def test_wavefronts_are_replayed_as_whole_launches_and_say_so(self):
+        result = self.warns("compare", *SCENE, *PICTURE, "--spp", "4", "--strategy", "coherent", "--execution",
+                            "wavefront", *GPU)
+        self.assertIn("whole launches are replayed", result.stderr)
+
+    def test_targets_and_windows_that_make_no_sense_are_refused(self):
+        for option, value in (("--target-error", "0%"), ("--target-error", "-1%"), ("--target-error", "101%"),
+                              ("--target-error", "2"), ("--target-error", "two%"), ("--target-error", "nan%"),
+                              ("--windows", "0"), ("--windows", "1"), ("--windows", "1000000"), ("--time-budget", "-1"),
+                              ("--time-budget", "inf")):
+            self.refuses(2, *COMPARE, option, value, mentions=[option, value, "expected"])
+        for first, second in ((["--exact"], ["--windows", "8"]), (["--trace-samples", "2"], ["--target-error", "2%"]),
+                              (["--exact"], ["--time-budget", "3"])):
+            self.refuses(2, *COMPARE, *first, *second, mentions=["together"])
+
+    def test_an_estimate_from_trace_files_is_refused(self):
+        trace = self.capture()
+        line = self.refuses(2, "compare", trace, *GPU, "--target-error", "2%", mentions=["--target-error"])
+        self.assertIn("whole launches", line)
+
+
+if __name__ == "__main__":
+    main()
