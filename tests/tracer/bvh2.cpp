@@ -11,13 +11,13 @@ using namespace raycache;
 using namespace raycache::tracer;
 using namespace raycache::tracer::test;
 
-TEST_CASE("bvh2: a node takes 64 bytes with its boxes first, a triangle 48 with its vertices at 0, 16, 32") {
+TEST_CASE("bvh2: a node takes 64 bytes with its boxes first, a triangle 48 with its axes at 0, 16, 32") {
     CHECK(sizeof(Bvh2Node) == 64);
     CHECK(offsetof(Bvh2Node, x) == 0);
     CHECK(offsetof(Bvh2Node, child) == 48);
     CHECK(sizeof(LeafTriangle) == 48);
-    CHECK(offsetof(LeafTriangle, v1) == 16);
-    CHECK(offsetof(LeafTriangle, v2) == 32);
+    CHECK(offsetof(LeafTriangle, y) == 16);
+    CHECK(offsetof(LeafTriangle, z) == 32);
 }
 
 TEST_CASE("bvh2: nodes and triangles are those of the tree, inner nodes in depth-first order") {
@@ -29,9 +29,9 @@ TEST_CASE("bvh2: nodes and triangles are those of the tree, inner nodes in depth
         for (std::size_t i = 0; i < made.triangles.size(); ++i) {
             const std::uint32_t t = bvh.triangles[i];
             REQUIRE(made.triangles[i].triangle == t);
-            REQUIRE(made.triangles[i].v0 == corner(scene, t, 0));
-            REQUIRE(made.triangles[i].v1 == corner(scene, t, 1));
-            REQUIRE(made.triangles[i].v2 == corner(scene, t, 2));
+            REQUIRE(made.triangles[i].vertex(0) == corner(scene, t, 0));
+            REQUIRE(made.triangles[i].vertex(1) == corner(scene, t, 1));
+            REQUIRE(made.triangles[i].vertex(2) == corner(scene, t, 2));
             REQUIRE(made.triangles[i].alpha == 0);
         }
         // Both trees side by side.

@@ -2,6 +2,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
+#include <utility>
 
 #include "exact_judge.hpp"
 #include "test_rays.hpp"
@@ -12,7 +14,9 @@ using namespace raycache::tracer::test;
 
 namespace {
 
-LeafTriangle triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t index = 0) { return {a, index, b, 0, c, 0}; }
+LeafTriangle triangle(Vec3 a, Vec3 b, Vec3 c, std::uint32_t index = 0) {
+    return {{a.x, b.x, c.x}, index, {a.y, b.y, c.y}, 0, {a.z, b.z, c.z}, 0};
+}
 
 Hit hit_of(const LeafTriangle& t, const Ray& ray) {
     ShearedRay prepared;
@@ -21,6 +25,33 @@ Hit hit_of(const LeafTriangle& t, const Ray& ray) {
     hit.t = ray.t_max;
     test_triangle(t, prepared, hit);
     return hit;
+}
+
+/// The test as its authors write it, number by number.
+void test_plainly(const LeafTriangle& triangle, const Ray& ray, Hit& hit) {
+    const Vec3 d = ray.direction, size{std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)};
+    const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    int kx = (kz + 1) % 3, ky = (kx + 1) % 3;
+    if (d[kz] < 0) std::swap(kx, ky);
+    const float sz = 1.0F / d[kz], sx = d[kx] * sz, sy = d[ky] * sz;
+    std::array<float, 3> x{}, y{}, z{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 from_origin = triangle.vertex(static_cast<int>(i)) - ray.origin;
+        z[i] = from_origin[kz];
+        x[i] = from_origin[kx] - sx * z[i];
+        y[i] = from_origin[ky] - sy * z[i];
+    }
+    float e0 = x[2] * y[1] - y[2] * x[1], e1 = x[0] * y[2] - y[0] * x[2], e2 = x[1] * y[0] - y[1] * x[0];
+    if (e0 == 0 || e1 == 0 || e2 == 0) {
+        e0 = static_cast<float>(double{x[2]} * double{y[1]} - double{y[2]} * double{x[1]});
+        e1 = static_cast<float>(double{x[0]} * double{y[2]} - double{y[0]} * double{x[2]});
+        e2 = static_cast<float>(double{x[1]} * double{y[0]} - double{y[1]} * double{x[0]});
+    }
+    if ((e0 < 0 || e1 < 0 || e2 < 0) && (e0 > 0 || e1 > 0 || e2 > 0)) return;
+    const float determinant = e0 + e1 + e2;
+    if (determinant == 0) return;
+    const float t = (e0 * (sz * z[0]) + e1 * (sz * z[1]) + e2 * (sz * z[2])) / determinant;
+    if (t > ray.t_min && t <= hit.t) hit = {t, e1 / determinant, e2 / determinant, triangle.triangle};
 }
 
 Ray along(Vec3 origin, Vec3 direction) {
@@ -56,6 +87,33 @@ TEST_CASE("triangle test: a ray at a known point hits it with known t, u, v") {
     CHECK(hit.u == 0.25F);  // weight of the second vertex
     CHECK(hit.v == 0.5F);
     CHECK(hit.triangle == 0);
+}
+
+TEST_CASE("triangle test: vectors give the numbers of the plain formula, bit for bit, also where some are 0 or huge") {
+    Random random(5);
+    const Box cube{{-1, -1, -1}, {1, 1, 1}};
+    const auto coarse = [&] { return static_cast<float>(static_cast<int>(random.below(9)) - 4) / 4; };
+    const auto on_grid = [&] { return Vec3{coarse(), coarse(), coarse()}; };
+    std::uint64_t hits = 0, exact = 0, different = 0;
+    for (int i = 0; i < 600000; ++i) {
+        const bool grid = i % 3 == 0;  // many edges met exactly
+        const float scale = i % 7 == 0 ? 1e18F : i % 11 == 0 ? 1e-18F : 1.0F;
+        const auto point = [&] { return (grid ? on_grid() : random.in(cube)) * scale; };
+        const LeafTriangle t = triangle(point(), point(), point(), static_cast<std::uint32_t>(i));
+        const Vec3 from = point(), to = i % 2 == 0 ? (t.vertex(0) + t.vertex(1) + t.vertex(2)) / 3 : point();
+        if (from == to) continue;
+        const Ray ray = along(from, to - from);
+        const Hit hit = hit_of(t, ray);
+        Hit plain;
+        plain.t = ray.t_max;
+        test_plainly(t, ray, plain);
+        hits += hit.found();
+        exact += hit.found() && (hit.u == 0 || hit.v == 0);
+        different += std::memcmp(&hit, &plain, sizeof(Hit)) != 0;
+    }
+    CHECK(different == 0);
+    CHECK(hits > 100000);
+    CHECK(exact > 1000);
 }
 
 TEST_CASE("triangle test: both sides count") {
@@ -161,8 +219,9 @@ TEST_CASE("triangle test: at equal distance the lower index wins, whatever the o
     const Ray ray = along({0.25F, 0.25F, 1}, {0, 0, -1});
     ShearedRay prepared;
     prepared.set(ray);
-    const LeafTriangle low = triangle(right_angle.v0, right_angle.v1, right_angle.v2, 3),
-                       high = triangle(right_angle.v0, right_angle.v1, right_angle.v2, 8);
+    LeafTriangle low = right_angle, high = right_angle;
+    low.triangle = 3;
+    high.triangle = 8;
     for (const auto& [first, second] : {std::pair{low, high}, std::pair{high, low}}) {
         Hit hit;
         CHECK(test_triangle(first, prepared, hit));

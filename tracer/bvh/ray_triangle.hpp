@@ -1,9 +1,13 @@
 // Watertight ray–triangle intersection: S. Woop, C. Benthin, I. Wald, JCGT 2013. Shear the triangle so that the ray
 // runs along one axis, then decide by the signs of three 2-D edge functions; where one is exactly zero, decide in
-// double. Two triangles that share an edge compute the same number for it, so no ray slips between them.
+// double. Vectors hold one number per vertex: each is computed in the order of the formula, so that the result does not
+// depend on them. Two triangles that share an edge compute the same number for it, so no ray slips between them.
 #pragma once
 
+#include <immintrin.h>
+
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "tracer/bvh/layouts/leaf_triangle.hpp"
@@ -11,26 +15,29 @@
 
 namespace raycache::tracer {
 
-/// A ray prepared for triangle tests.
+/// A ray prepared for triangle tests: axes renamed so that z is the one along which the direction is largest.
 struct ShearedRay {
-    float origin[3];
-    int kx, ky, kz;    ///< kz: axis along which the direction is largest
+    float x, y, z;     ///< origin
     float sx, sy, sz;  ///< shear constants
     float t_min;
+    std::uint8_t row_x, row_y, row_z;  ///< where LeafTriangle has these axes, in bytes
 
     void set(const Ray& ray) {
-        origin[0] = ray.origin.x;
-        origin[1] = ray.origin.y;
-        origin[2] = ray.origin.z;
         const Vec3 size{std::fabs(ray.direction.x), std::fabs(ray.direction.y), std::fabs(ray.direction.z)};
-        kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-        kx = (kz + 1) % 3;
-        ky = (kx + 1) % 3;
+        const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+        int kx = (kz + 1) % 3;
+        int ky = (kx + 1) % 3;
         if (ray.direction[kz] < 0) std::swap(kx, ky);
+        x = ray.origin[kx];
+        y = ray.origin[ky];
+        z = ray.origin[kz];
         sz = 1.0F / ray.direction[kz];
         sx = ray.direction[kx] * sz;
         sy = ray.direction[ky] * sz;
         t_min = ray.t_min;
+        row_x = static_cast<std::uint8_t>(16 * kx);
+        row_y = static_cast<std::uint8_t>(16 * ky);
+        row_z = static_cast<std::uint8_t>(16 * kz);
     }
 };
 
@@ -38,31 +45,42 @@ struct ShearedRay {
 /// was: equal distances go to the lower triangle index, whatever the order of the visits. Leaves `hit` alone otherwise.
 /// Both sides count.
 inline bool test_triangle(const LeafTriangle& triangle, const ShearedRay& ray, Hit& hit) {
-    const float* v0 = &triangle.v0.x;
-    const float* v1 = &triangle.v1.x;
-    const float* v2 = &triangle.v2.x;
-    const int kx = ray.kx, ky = ray.ky, kz = ray.kz;
-    const float az = v0[kz] - ray.origin[kz], bz = v1[kz] - ray.origin[kz], cz = v2[kz] - ray.origin[kz];
-    const float ax = (v0[kx] - ray.origin[kx]) - ray.sx * az, ay = (v0[ky] - ray.origin[ky]) - ray.sy * az;
-    const float bx = (v1[kx] - ray.origin[kx]) - ray.sx * bz, by = (v1[ky] - ray.origin[ky]) - ray.sy * bz;
-    const float cx = (v2[kx] - ray.origin[kx]) - ray.sx * cz, cy = (v2[ky] - ray.origin[ky]) - ray.sy * cz;
-
-    float e0 = cx * by - cy * bx;  // weight of v0
-    float e1 = ax * cy - ay * cx;
-    float e2 = bx * ay - by * ax;
-    if (e0 == 0 || e1 == 0 || e2 == 0) {
-        e0 = static_cast<float>(double{cx} * double{by} - double{cy} * double{bx});
-        e1 = static_cast<float>(double{ax} * double{cy} - double{ay} * double{cx});
-        e2 = static_cast<float>(double{bx} * double{ay} - double{by} * double{ax});
+    const auto row = [&](std::uint8_t at) {
+        return _mm_load_ps(reinterpret_cast<const float*>(reinterpret_cast<const char*>(&triangle) + at));
+    };
+    const auto all = [](float v) { return _mm_set1_ps(v); };
+    // {of vertex a, of b, of c, anything}
+    const __m128 z = _mm_sub_ps(row(ray.row_z), all(ray.z));
+    const __m128 x = _mm_sub_ps(_mm_sub_ps(row(ray.row_x), all(ray.x)), _mm_mul_ps(all(ray.sx), z));
+    const __m128 y = _mm_sub_ps(_mm_sub_ps(row(ray.row_y), all(ray.y)), _mm_mul_ps(all(ray.sy), z));
+    const auto before = [](__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(2, 1, 0, 2)); };  // c, a, b
+    const auto behind = [](__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(0, 0, 2, 1)); };  // b, c, a
+    // Weights of a, b, c.
+    __m128 e = _mm_sub_ps(_mm_mul_ps(before(x), behind(y)), _mm_mul_ps(before(y), behind(x)));
+    const int negative = _mm_movemask_ps(e) & 7;
+    const int zero = _mm_movemask_ps(_mm_cmpeq_ps(e, _mm_setzero_ps())) & 7;
+    // NaN goes either way and fails below.
+    if (zero == 0 && negative != 0 && negative != 7) return false;
+    if (zero != 0) [[unlikely]] {
+        alignas(16) float ax[4], ay[4];
+        _mm_store_ps(ax, x);
+        _mm_store_ps(ay, y);
+        const auto exact = [&](int p, int q) {
+            return static_cast<float>(double{ax[p]} * double{ay[q]} - double{ay[p]} * double{ax[q]});
+        };
+        const float e0 = exact(2, 1), e1 = exact(0, 2), e2 = exact(1, 0);
+        if ((e0 < 0 || e1 < 0 || e2 < 0) && (e0 > 0 || e1 > 0 || e2 > 0)) return false;
+        e = _mm_setr_ps(e0, e1, e2, 0);
     }
-    if ((e0 < 0 || e1 < 0 || e2 < 0) && (e0 > 0 || e1 > 0 || e2 > 0)) return false;
-    const float determinant = e0 + e1 + e2;
+    alignas(16) float w[4], wz[4];
+    _mm_store_ps(w, e);
+    _mm_store_ps(wz, _mm_mul_ps(e, _mm_mul_ps(all(ray.sz), z)));
+    const float determinant = w[0] + w[1] + w[2];
     if (determinant == 0) return false;
-
-    const float t = (e0 * (ray.sz * az) + e1 * (ray.sz * bz) + e2 * (ray.sz * cz)) / determinant;
+    const float t = (wz[0] + wz[1] + wz[2]) / determinant;
     if (!(t > ray.t_min && t <= hit.t)) return false;
     if (t == hit.t && triangle.triangle >= hit.triangle) return false;
-    hit = {t, e1 / determinant, e2 / determinant, triangle.triangle};
+    hit = {t, w[1] / determinant, w[2] / determinant, triangle.triangle};
     return true;
 }
 

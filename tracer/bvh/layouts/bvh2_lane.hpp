@@ -2,6 +2,8 @@
 // not culled by distance: like the kernels this models, the stack holds no distances.
 #pragma once
 
+#include <immintrin.h>
+
 #include <bit>
 #include <cstdint>
 
@@ -17,6 +19,17 @@ struct Bvh2View {
     const LeafTriangle* triangles;
 
     const LeafTriangle& triangle(std::uint32_t element) const { return triangles[element]; }
+
+    /// Asks the cache for a node, or for the first triangle of a leaf: the other lanes of the warp come before it is
+    /// read.
+    void fetch_ahead(std::uint32_t ref) const {
+        const std::uintptr_t node = reinterpret_cast<std::uintptr_t>(nodes) + std::uintptr_t{ref} * sizeof(Bvh2Node);
+        const std::uintptr_t first =
+            reinterpret_cast<std::uintptr_t>(triangles) + std::uintptr_t{ChildRef::first(ref)} * sizeof(LeafTriangle);
+        const auto* const at = reinterpret_cast<const char*>(ChildRef::is_leaf(ref) ? first : node);
+        _mm_prefetch(at, _MM_HINT_T0);
+        _mm_prefetch(at + sizeof(LeafTriangle) - 1, _MM_HINT_T0);  // it may lie across two lines
+    }
 };
 
 /// See WalkableBvh. The hot loop of a capture touches little else.
@@ -57,6 +70,7 @@ public:
         top_ = top - (hit.none & 1U);
         current_ = ref;
         height_ = height;
+        view.fetch_ahead(ref);
         // The child taken; or, if none is, how far to pop.
         return {(hit.near_shift >> 5) + (pushed - height), ~ref >> 31, ref == ChildRef::nothing};
     }

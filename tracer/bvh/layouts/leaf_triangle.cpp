@@ -7,9 +7,9 @@ std::vector<LeafTriangle> leaf_triangles(const Bvh& bvh, const Scene& scene) {
     triangles.reserve(bvh.triangles.size());
     for (const std::uint32_t t : bvh.triangles) {
         const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
-        triangles.push_back({scene.positions[index[0]], t, scene.positions[index[1]],
-                             scene.materials[scene.material_of[t]].may_have_holes() ? 1U : 0U,
-                             scene.positions[index[2]], 0});
+        const Vec3 a = scene.positions[index[0]], b = scene.positions[index[1]], c = scene.positions[index[2]];
+        const bool holes = scene.materials[scene.material_of[t]].may_have_holes();
+        triangles.push_back({{a.x, b.x, c.x}, t, {a.y, b.y, c.y}, holes ? 1U : 0U, {a.z, b.z, c.z}, 0});
     }
     return triangles;
 }

@@ -1,5 +1,5 @@
-// A triangle as layouts keep it: 48 bytes, three vertices in three 16-byte loads, with the index of the triangle in the
-// scene in what the first vertex leaves free.
+// A triangle as layouts keep it: 48 bytes, one 16-byte load per axis, with the index of the triangle in the scene in
+// what the first leaves free.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,14 @@
 namespace raycache::tracer {
 
 struct alignas(16) LeafTriangle {
-    Vec3 v0;
+    float x[3];              ///< of the three vertices
     std::uint32_t triangle;  ///< index in the scene
-    Vec3 v1;
+    float y[3];
     std::uint32_t alpha;  ///< 1 if its material may have holes
-    Vec3 v2;
+    float z[3];
     std::uint32_t unused;
+
+    Vec3 vertex(int i) const { return {x[i], y[i], z[i]}; }
 };
 static_assert(sizeof(LeafTriangle) == 48);
 
