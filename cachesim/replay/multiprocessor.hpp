@@ -75,16 +75,17 @@ public:
     }
 
     /// Takes its turn in each round from `round` up to `end`, and counts `round` up. Stops after an access that frees a
-    /// CTA slot, and returns that slot.
+    /// CTA slot, and returns that slot. SmCaches::end_run(), and then forget_ended(), may come when it returns or later.
     std::optional<unsigned> run(std::size_t& round, std::size_t end, Workspace& work) {
         unsigned freed = none;
         while (round < end && !active_.empty() && freed == none) freed = issue(round++, work);
-        memory_.end_run(work);
-        ended_.clear();
         if (freed != none) return freed;
         round = end;
         return std::nullopt;
     }
+
+    /// Lets go of the warps that have ended: nothing of theirs is to be looked up any more.
+    void forget_ended() { ended_.clear(); }
 
 private:
     struct Warp {

@@ -93,12 +93,14 @@ void Replay::count_until_here() { impl_->groups = &impl_->memory.group_numbers()
 
 LaunchStatistics Replay::finish() {
     impl_->run_all();
+    impl_->memory.catch_up();
     std::vector<const BatchGroups*> all;
     for (const BatchGroups& batch : impl_->memory.group_numbers().batches()) all.push_back(&batch);
     return {impl_->sample_index, impl_->memory.groups(all)};
 }
 
 std::vector<LaunchStatistics> Replay::batches() const {
+    impl_->memory.catch_up();
     std::vector<LaunchStatistics> each;
     const auto& batches = impl_->memory.group_numbers().batches();
     const std::size_t count = batches.size() - (impl_->empty_batch ? 1 : 0);
@@ -106,6 +108,9 @@ std::vector<LaunchStatistics> Replay::batches() const {
     return each;
 }
 
-LineFills Replay::last_level_fills() const { return impl_->memory.shared_fills(); }
+LineFills Replay::last_level_fills() const {
+    impl_->memory.catch_up();
+    return impl_->memory.shared_fills();
+}
 
 }  // namespace raycache::cachesim

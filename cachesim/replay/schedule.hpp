@@ -5,7 +5,7 @@
 // them in turn: Hierarchy collects what they ask of it until the window ends. And CTAs go to slots in the order in
 // which these become free: an SM that frees a slot waits for its next CTA, and no SM after it in turn runs beyond that
 // round meanwhile. So SMs before it are as far as it is or further, SMs after it are not, and the accesses of each
-// round come in turn.
+// round come in turn. All that is decided here needs no cache, so the caches may answer later, on other threads.
 #pragma once
 
 #include <algorithm>
@@ -45,9 +45,11 @@ public:
     std::optional<FreeSlot> next_free() {
         while (waiting_.empty()) {
             memory_.end_window();
+            for (Multiprocessor& sm : sms_) sm.forget_ended();
             if (std::all_of(sms_.begin(), sms_.end(), [](const Multiprocessor& sm) { return sm.idle(); }))
                 return std::nullopt;
             std::fill(reached_.begin(), reached_.end(), std::size_t{0});
+            memory_.begin_window();
             run(0, 0);
         }
         return waiting_.top();
@@ -73,6 +75,7 @@ private:
                     waiting_.push({reached_[sm] - 1, sm, *slot});
                     waits_[sm] = true;
                 }
+                if (memory_.end_run(sm)) sms_[sm].forget_ended();
             }
             limit = reached_[sm];
         }

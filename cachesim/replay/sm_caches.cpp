@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <span>
+#include <utility>
 
 namespace raycache::cachesim {
 
@@ -107,6 +108,12 @@ void SmCaches::lack(const Lookups& lookups) {
 void SmCaches::end_window() {
     issued_ = begun_ = 0;
     missing_.count = 0;
+}
+
+void SmCaches::end_window(Lookups& missing, Origin* next_window) {
+    std::swap(missing_, missing);
+    window_ = next_window;
+    end_window();
 }
 
 void SmCaches::end_kernel() {

@@ -48,6 +48,12 @@ public:
     const Lookups& missing() const { return missing_; }
     /// The next window begins.
     void end_window();
+    /// Likewise: what was missing goes to `missing`, whose room this object takes over, and the accesses of the next
+    /// window are written elsewhere.
+    void end_window(Lookups& missing, Origin* next_window);
+
+    /// Accesses that end_run() has not looked up yet.
+    std::uint32_t waiting() const { return issued_ - begun_; }
 
     /// The L1s of a GPU are empty for the next kernel; a CPU's caches (three levels) keep what they have.
     void end_kernel();

@@ -15,7 +15,8 @@
 
 namespace raycache::tools {
 
-/// Hands over the warps of one launch, in order.
+/// Hands over the warps of one launch, in order, one at a time. They are decoded or traced ahead by threads of the TBB
+/// arena that are free, so the sink may be called on another thread than the warp before.
 using WarpSink = std::function<void(traces::WarpTrace&&)>;
 
 struct LaunchSource {
