@@ -1,10 +1,12 @@
 // A scene with everything derived from it once: BVH, lights, texel layout. Shared by all captures and renders of it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "tracer/bvh/bvh.hpp"
 #include "tracer/bvh/embree_scene.hpp"
@@ -15,13 +17,18 @@
 
 namespace raycache::tracer {
 
+/// Gives the tree that build_bvh() would build.
+using BvhSource = std::function<Bvh(const Scene&, const BvhSettings&)>;
+
 class PreparedScene {
 public:
     /// `layout`: a name of bvh_layouts(). Throws UsageError for another.
-    PreparedScene(Scene scene, const BvhSettings& settings, const std::string& layout = default_layout)
+    PreparedScene(Scene scene, const BvhSettings& settings, const std::string& layout = default_layout,
+                  BvhSource source = build_bvh)
         : scene_(with_offset_scale(std::move(scene))),
           settings_(settings),
           layout_(bvh_layout_entry(layout)),
+          source_(std::move(source)),
           lights_(scene_),
           texels_(scene_) {}
     PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
@@ -33,7 +40,7 @@ public:
     const BvhLayout& bvh() const {
         std::call_once(bvh_once_, [this] {
             scene_.charge(scene_.triangle_count() * bvh_bytes, "BVH of its triangles");
-            bvh_ = layout_.make(build_bvh(scene_, settings_), scene_);
+            bvh_ = layout_.make(source_(scene_, settings_), scene_);
         });
         return *bvh_;
     }
@@ -61,6 +68,7 @@ private:
     Scene scene_;
     BvhSettings settings_;
     const BvhLayoutEntry& layout_;
+    BvhSource source_;
     Lights lights_;
     TexelLayout texels_;
     mutable std::once_flag bvh_once_, embree_once_;

@@ -1,4 +1,4 @@
-// Little-endian integers in byte buffers; reads are bounded. Internal to traces/.
+// Little-endian integers in byte buffers; reads are bounded. For the file formats of traces/ and tracer/bvh/.
 #pragma once
 
 #include <algorithm>

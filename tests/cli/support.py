@@ -11,6 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 RAYCACHE = os.environ.get("RAYCACHE", str(ROOT / "build/release/raycache"))
 
 os.environ.setdefault("RAYCACHE_PROGRESS_SECONDS", "0")  # a slow machine must not add lines to stderr
+os.environ.pop("RAYCACHE_BVH_CACHE", None)  # nor a cache files
 
 # Small enough for a sanitizer build.
 SCENE = ["courtyard", "--detail", "50000"]

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tools/jobs/bvh_cache.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tracer/scene/scene_name.hpp"
 #include "traces/error.hpp"
@@ -35,10 +36,18 @@ tracer::SceneRequest::Sky parse_sky(const std::string& text) {
     throw UsageError(fmt::format("--sky '{}'; expected one of: auto, on, off", text));
 }
 
+tracer::BvhSource bvh_source(const std::string& folder, Observer& observer) {
+    if (folder.empty()) return tracer::build_bvh;
+    return [folder, warn = observer.warning()](const tracer::Scene& scene, const tracer::BvhSettings& settings) {
+        return cached_bvh(folder, scene, settings, warn);
+    };
+}
+
 }  // namespace
 
 std::unique_ptr<tracer::PreparedScene> SceneSettings::prepare(const FileNames& outputs, Observer& observer) const {
     tracer::bvh_layout_entry(layout);  // before anything takes time
+    if (!bvh_cache.empty()) check_bvh_cache(bvh_cache);
     if (!tracer::find_builtin_scene(source)) refuse_overwriting({source}, outputs);
     std::error_code unknown;
     const std::uintmax_t bytes = std::filesystem::file_size(source, unknown);
@@ -58,7 +67,7 @@ std::unique_ptr<tracer::PreparedScene> SceneSettings::prepare(const FileNames& o
     bvh.spatial_splits = spatial_splits;
     tracer::Scene scene = tracer::load_scene(request, observer.warning());
     refuse_overwriting(scene.files, outputs);
-    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh, layout);
+    return std::make_unique<tracer::PreparedScene>(std::move(scene), bvh, layout, bvh_source(bvh_cache, observer));
 }
 
 std::string SceneSettings::command() const {

@@ -21,9 +21,11 @@ struct SceneSettings {
     std::string sky = "auto";     ///< constant sky and a sun: auto (where the scene has no light), on, off
     bool spatial_splits = false;  ///< build the BVH with spatial splits
     std::string layout = tracer::default_layout;  ///< of the BVH in memory: a name of bvh_layouts()
+    std::string bvh_cache;  ///< folder that keeps built BVHs; empty: none. Results do not depend on it
 
-    /// Loads the scene and builds everything on it. Throws UsageError for settings that are none, and if one of
-    /// `outputs`, which the caller is going to write, is a file that the scene is read from; else as load_scene().
+    /// Loads the scene; what is built on it is built when it is first asked for, and speaks to the Observer then. Throws
+    /// UsageError for settings that are none, and if one of `outputs`, which the caller is going to write, is a file
+    /// that the scene is read from; else as load_scene().
     std::unique_ptr<tracer::PreparedScene> prepare(const FileNames& outputs, Observer&) const;
     /// As options of a command line, for a trace's provenance.
     std::string command() const;

@@ -13,7 +13,7 @@ struct Fields<SceneSettings> {
                                     Field{"camera", &S::camera},   Field{"eye", &S::eye},
                                     Field{"look_at", &S::look_at}, Field{"fov", &S::fov},
                                     Field{"sky", &S::sky},         Field{"spatial_splits", &S::spatial_splits},
-                                    Field{"layout", &S::layout}};
+                                    Field{"layout", &S::layout},   Field{"bvh_cache", &S::bvh_cache}};
 };
 
 template <>

@@ -134,6 +134,7 @@ const std::vector<OptionRule>& rules() {
         {"--thread-map", thread_map_rule},
         {"--spatial-splits", launches_rule},
         {"--layout", launches_rule},
+        {"--bvh-cache", launches_rule},
         {"--set", launches_rule},
         {"--warps-per-sm", launches_rule},
         {"--bounces-diffuse", [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_diffuse, c); }},
@@ -207,7 +208,9 @@ std::vector<std::string> idle_on_traces(const Command& command) {
     std::vector<std::string> lines;
     for (const auto& option : command.options())
         if (option->given() && option->is_about_scene())
-            lines.push_back(fmt::format("{} has no effect: the trace files say it", option->name()));
+            lines.push_back(fmt::format(
+                "{} has no effect: {}", option->name(),
+                option->name() == "--bvh-cache" ? "a replay of trace files builds no BVH" : "the trace files say it"));
     return lines;
 }
 

@@ -25,7 +25,8 @@ bool contains(const std::array<std::string_view, n>& list, std::string_view word
 
 /// Options that say how fast and where to, not what is asked: results do not depend on them.
 bool is_about_output(const std::string& key) {
-    constexpr std::array<std::string_view, 7> list{"help", "json", "csv", "save", "wide", "threads", "memory_limit"};
+    constexpr std::array<std::string_view, 8> list{"help", "json",    "csv",          "save",
+                                                   "wide", "threads", "memory_limit", "bvh_cache"};
     return contains(list, key);
 }
 

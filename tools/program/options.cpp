@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <thread>
 
@@ -86,6 +87,13 @@ void SceneOptions::add_view(Command& command) {
     command.add_flag("--spatial-splits", spatial_splits, "build the BVH with spatial splits");
     command.add_option("--layout", layout, "how the BVH lies in memory (see 'raycache list layouts')")
         ->choices("layout", names_of(tracer::bvh_layouts()));
+    if (const char* folder = std::getenv("RAYCACHE_BVH_CACHE")) bvh_cache = folder;
+    command
+        .add_option("--bvh-cache", bvh_cache,
+                    "folder that keeps BVHs once built, for the next command on the scene; default: "
+                    "$RAYCACHE_BVH_CACHE, or none. Results do not depend on it")
+        ->type_name("DIR")
+        ->default_text("");
     command.group("");
 }
 

@@ -2,7 +2,9 @@
 // read.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tracer/scene/scene.hpp"
@@ -32,5 +34,11 @@ struct BvhSettings {
 /// Builds with Embree's binned-SAH builder on one thread, so that equal scenes give equal trees. Throws Error where the
 /// scene has no triangle or coordinates beyond 1e18.
 Bvh build_bvh(const Scene&, const BvhSettings& = {});
+
+/// Who builds, in words: equal ones build equal trees of equal triangles, on every processor.
+std::string bvh_builder();
+
+/// Entries of Bvh::triangles that build_bvh() can make of so many triangles.
+std::size_t most_leaf_entries(std::size_t triangles, const BvhSettings&);
 
 }  // namespace raycache::tracer
