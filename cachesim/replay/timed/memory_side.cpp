@@ -60,6 +60,7 @@ void MemorySide::request(const MissRequest& miss) {
     const double sent = std::max(static_cast<double>(miss.time), free);
     free = sent + crossbar_cost_;
     const LineMap::Place place = rules_.maps.back().place(miss.line);
+    slices_[place.slice].lines().prefetch(miss.id);  // it is looked up when the requests of all SMs are there
     to_slices_.add(by_inputs_ ? miss.sm : place.slice,
                    {static_cast<Cycle>(std::ceil(sent)), place.slice, static_cast<std::uint32_t>(place.set), miss.id,
                     miss.number, miss.sm, miss.sector, miss.l1});

@@ -35,6 +35,14 @@ public:
     Register& operator[](std::uint32_t number) { return registers_[number]; }
     const Register& operator[](std::uint32_t number) const { return registers_[number]; }
 
+    /// The register is about to be used; then what it leads to.
+    void prefetch(std::uint32_t number) const { __builtin_prefetch(&registers_[number], 1); }
+    void prefetch_others(std::uint32_t number) const {
+        const Register& r = registers_[number];
+        if (r.waiters != none) __builtin_prefetch(&waiters_[r.waiters], 1);
+        __builtin_prefetch(&of_entry_[r.entry], 1);
+    }
+
     /// The register of a sector that is on its way.
     std::uint32_t find(std::uint32_t entry, std::uint32_t sector) const {
         std::uint32_t number = of_entry_[entry];

@@ -74,6 +74,10 @@ public:
     /// Serves the load at the front from `now` on, as far as `end`: now >= free(). Returns it if it has passed.
     std::optional<Load> serve(Cycle now, Cycle end);
 
+    /// The arrival of a register's sector is about to be known: what that takes comes nearer, in two steps.
+    void prefetch(std::uint32_t register_number) const { cache_.registers().prefetch(register_number); }
+    void prefetch_line(std::uint32_t register_number) const { cache_.prefetch_line(register_number); }
+
     /// When the sector of a register arrives is known. Calls known(data) for data that are complete by that.
     template <class Known>
     void arrive(std::uint32_t register_number, Cycle time, AnswerRate& rate, const Known& known) {

@@ -18,7 +18,7 @@ SectorCache::SectorCache(std::uint64_t sets, std::uint64_t ways, Policy policy, 
       by_ways_(ways),
       shift_(64 - std::countr_zero(std::bit_ceil(2 * sets * ways))),
       lines_(sets * ways),
-      slots_(std::bit_ceil(2 * sets * ways), none),
+      slots_(std::bit_ceil(2 * sets * ways)),
       queues_(policy != Policy::ordered && ways > few_ways ? sets : 0) {}
 
 void SectorCache::use_ordered(std::uint32_t entry) {
@@ -39,8 +39,8 @@ std::uint32_t SectorCache::replace(std::uint64_t set, std::uint32_t id) {
     else
         lines_[entry].used = tick();
     std::uint32_t at = home(id);
-    while (slots_[at] != none) at = next(at);
-    slots_[at] = entry;
+    while (slots_[at].entry != none) at = next(at);
+    slots_[at] = {id, entry};
     return entry;
 }
 
@@ -53,14 +53,14 @@ void SectorCache::remove(std::uint32_t entry) {
 void SectorCache::unlink(std::uint32_t entry) {
     const auto mask = static_cast<std::uint32_t>(slots_.size() - 1);
     std::uint32_t hole = home(lines_[entry].id);
-    while (slots_[hole] != entry) hole = next(hole);
-    for (std::uint32_t at = next(hole); slots_[at] != none; at = next(at)) {
-        const std::uint32_t from = home(lines_[slots_[at]].id);
+    while (slots_[hole].entry != entry) hole = next(hole);
+    for (std::uint32_t at = next(hole); slots_[at].entry != none; at = next(at)) {
+        const std::uint32_t from = home(slots_[at].id);
         if (((at - from) & mask) < ((at - hole) & mask)) continue;
         slots_[hole] = slots_[at];
         hole = at;
     }
-    slots_[hole] = none;
+    slots_[hole] = {};
 }
 
 std::uint32_t SectorCache::victim(std::uint64_t set) {

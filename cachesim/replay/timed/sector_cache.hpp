@@ -35,10 +35,15 @@ public:
     /// The entry that holds the line, or none.
     std::uint32_t find(std::uint32_t id) const {
         for (std::uint32_t at = home(id);; at = next(at)) {
-            const std::uint32_t entry = slots_[at];
-            if (entry == none || lines_[entry].id == id) return entry;
+            const Slot slot = slots_[at];
+            if (slot.id == id || slot.entry == none) return slot.entry;
         }
     }
+
+    /// The line is about to be looked for.
+    void prefetch(std::uint32_t id) const { __builtin_prefetch(&slots_[home(id)]); }
+    /// The entry is about to be used.
+    void prefetch_entry(std::uint32_t entry) const { __builtin_prefetch(&lines_[entry], 1); }
 
     Line& operator[](std::uint32_t entry) { return lines_[entry]; }
     const Line& operator[](std::uint32_t entry) const { return lines_[entry]; }
@@ -73,6 +78,9 @@ public:
     void remove(std::uint32_t entry);
 
 private:
+    struct Slot {
+        std::uint32_t id = none, entry = none;
+    };
     /// A line that may be the next to go, if it was not used since.
     struct Candidate {
         std::uint32_t used, entry;
@@ -110,8 +118,8 @@ private:
     int shift_;
     std::uint32_t now_ = 0, newest_evicted_ = 0;
     std::vector<Line> lines_;
-    std::vector<std::uint32_t> slots_;  ///< entries by hash of their line, linear probing, at most half full
-    std::vector<Queue> queues_;         ///< of each set, where there are many ways
+    std::vector<Slot> slots_;    ///< lines by their hash, linear probing, at most half full
+    std::vector<Queue> queues_;  ///< of each set, where there are many ways
 };
 
 }  // namespace raycache::cachesim

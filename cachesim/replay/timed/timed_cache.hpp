@@ -27,6 +27,7 @@ public:
     SectorCache& lines() { return lines_; }
     const SectorCache& lines() const { return lines_; }
     MissRegisters& registers() { return registers_; }
+    const MissRegisters& registers() const { return registers_; }
 
     /// Takes in what arrives by `now`.
     void drain(Cycle now) {
@@ -34,6 +35,12 @@ public:
     }
     /// Of the next sector whose arrival is known, or `never`.
     Cycle next_arrival() const { return next_arrival_; }
+
+    /// The sector of a register is about to arrive.
+    void prefetch_line(std::uint32_t register_number) const {
+        registers_.prefetch_others(register_number);
+        (coming_ ? *coming_ : lines_).prefetch_entry(registers_[register_number].entry);
+    }
 
     /// The register of a sector of this line that is on its way, or none. `entry`: where lines() holds the line, or
     /// none.

@@ -7,6 +7,7 @@
 
 #include "cachesim/replay/group_numbers.hpp"
 #include "cachesim/replay/launch_checks.hpp"
+#include "cachesim/replay/timed/each_sm.hpp"
 #include "cachesim/replay/timed/streamed_traffic.hpp"
 #include "cachesim/replay/timed/timed_sm.hpp"
 
@@ -51,6 +52,11 @@ struct TimedReplay::Impl {
         return std::any_of(sms.begin(), sms.end(), [](const TimedSm& sm) { return sm.fetches_ahead(); });
     }
     void skip_idle_windows();
+    /// Whether the SMs' work of a window is worth several threads, and they may have it.
+    bool together() const {
+        const std::uint64_t warps = (placed - ended) * rules.gpu.warps_per_cta;
+        return warps >= fewest_warps_of_threads && ids.dense();
+    }
     Cycle last_end() const {
         Cycle last = began;
         for (const TimedSm& sm : sms) last = std::max(last, sm.last_end());
@@ -77,10 +83,10 @@ struct TimedReplay::Impl {
     Cycle began = 0;     ///< the kernel
     Cycle launched = 0;  ///< the kernel, since the launch of the first one
     std::vector<WarpPointer> cta;
-    std::uint64_t placed = 0;
-    std::vector<FreeSlot> free;  ///< earliest last
-    bool all_placed = false;     ///< no CTA of the kernel waits for a slot
-    std::uint64_t rays = 0;      ///< of CTAs that no SM runs
+    std::uint64_t placed = 0, ended = 0;  ///< CTAs of the kernel on SMs
+    std::vector<FreeSlot> free;           ///< earliest last
+    bool all_placed = false;              ///< no CTA of the kernel waits for a slot
+    std::uint64_t rays = 0;               ///< of CTAs that no SM runs
 
     std::uint32_t wanted = 0, of_cta = 0, running = 0;  ///< batches: of the next warp, of the CTA, of this cycle
     std::uint32_t last_batch = 0;
@@ -172,13 +178,15 @@ void TimedReplay::Impl::place_cta() {
 
 void TimedReplay::Impl::run_window() {
     const Cycle begin = now, end = now + memory.window();
-    memory.run_replies(begin, end, [this](const MemorySide::Reply& reply) { sms[reply.output].deliver(reply); });
+    memory.run_replies(begin, end,
+                       [this](const MemorySide::Reply& reply) { sms[reply.output].replies.push_back(reply); });
+    for_each_sm(sms.size(), together(), [&](std::size_t i) { sms[i].run(end); });
     for (std::size_t i = 0; i < sms.size(); ++i) {
         TimedSm& sm = sms[i];
-        sm.run(end);
         for (const MissRequest& miss : sm.misses) memory.request(miss);
         sm.misses.clear();
         for (const auto& [time, slot] : sm.freed) free.push_back({time, i, slot});
+        ended += sm.freed.size();
         sm.freed.clear();
     }
     memory.run_requests(begin, end);
@@ -220,7 +228,7 @@ void TimedReplay::end_kernel() {
     i.launched = i.last_end() + i.rules.timing.launch_cycles;
     i.began = i.now = std::max(i.now, i.launched);
     for (TimedSm& sm : i.sms) sm.end_kernel();
-    i.placed = 0;
+    i.placed = i.ended = 0;
     i.free.clear();
 }
 

@@ -2,8 +2,9 @@
 //
 // The same warps, CTAs and placement as the functional replay (cachesim/replay/replay.hpp); what hits where follows
 // from when it is asked for. SMs run a window of cycles each, as long as no reply can come back within it; then the
-// requests of all of them go to L2 in order of time (cachesim/replay/timed/memory_side.hpp). Memory does not grow with
-// the trace.
+// requests of all of them go to L2 in order of time (cachesim/replay/timed/memory_side.hpp). Within a window SMs know
+// nothing of each other, so the threads of the current TBB arena share them, with the same counts (each_sm.hpp). Memory
+// does not grow with the trace.
 //
 // Statistics are kept for batches, each a stretch of time: from the cycle in which the CTA of the first warp pushed
 // after count_from_here() becomes resident to that of the first warp pushed after count_until_here(), or to the end.

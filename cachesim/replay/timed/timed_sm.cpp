@@ -135,6 +135,7 @@ void TimedSm::compute(std::uint32_t number, Cycle time) {
     Flight& flight = flights_[number];
     flight.computing = true;
     counts_.visit_cycles += time - flight.first_issue;
+    warps_[slot_of(number)].records.prefetch();
     const std::uint32_t early = std::min(flight.loads - 1, flight.instructions);
     events_.push(run_instructions(number, time, flight.instructions, early), number);
 }
@@ -205,6 +206,16 @@ void TimedSm::deliver(const MemorySide::Reply& reply) {
     tell_ports();
 }
 
+/// Where they are told of lies all over the caches of the processor that runs this: it is asked for all at once first.
+void TimedSm::take_replies() {
+    if (!private_) {
+        for (const MemorySide::Reply& reply : replies) ports_[reply.l1].prefetch(reply.number);
+        for (const MemorySide::Reply& reply : replies) ports_[reply.l1].prefetch_line(reply.number);
+    }
+    for (const MemorySide::Reply& reply : replies) deliver(reply);
+    replies.clear();
+}
+
 /// What the core's L2 answered.
 void TimedSm::tell_ports() {
     for (const PrivateLevel::Answer& answer : answered_)
@@ -222,6 +233,7 @@ void TimedSm::serve_private(Cycle now) {
 }
 
 void TimedSm::run(Cycle end) {
+    take_replies();
     if (flow_) {
         run_flow(end);
         return;

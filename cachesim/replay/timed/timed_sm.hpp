@@ -28,7 +28,7 @@
 
 namespace raycache::cachesim {
 
-class TimedSm {
+class alignas(64) TimedSm {
 public:
     /// `ids` number the lines of the regions; both must outlive this object.
     TimedSm(const TimedRules&, LineIds& ids, std::uint16_t number);
@@ -38,15 +38,15 @@ public:
     /// Makes a CTA's warps resident from that cycle on.
     void place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle from);
 
-    /// Simulates cycles before `end`. Whatever needs a reply that is not there yet waits.
+    /// Takes in the replies, and simulates cycles before `end`. Whatever needs a reply that is not there yet waits.
+    /// SMs may run at once, on several threads, if the line ids are dense.
     void run(Cycle end);
 
     /// Before this cycle nothing happens here unless a sector arrives.
     Cycle next_time() const;
 
-    /// A sector arrives; its cycle is not before the end of the last run.
-    void deliver(const MemorySide::Reply&);
-
+    /// Sectors that arrive, in order of coming; no cycle is before the end of the last run. The next one empties it.
+    std::vector<MemorySide::Reply> replies;
     /// Misses of the last runs in order of time. The caller empties it.
     std::vector<MissRequest> misses;
     /// CTA slots that became free, and when. The caller empties it.
@@ -100,6 +100,8 @@ private:
     void issue(unsigned scheduler, Cycle);
     void serve(Port&, Cycle, Cycle end);
     void serve_private(Cycle);
+    void take_replies();
+    void deliver(const MemorySide::Reply&);
     void tell_ports();
     void data_known(std::uint32_t number);
 
