@@ -27,7 +27,7 @@ std::uint32_t block_length(std::uint64_t all, std::uint32_t wanted) {
 std::vector<WindowPlace> stratified(RandomStream& random, std::uint32_t count, std::uint32_t launches,
                                     std::uint32_t warps, std::uint32_t grain) {
     constexpr std::uint64_t unit = 1U << 16;
-    const std::uint64_t grains = std::max(1U, warps / grain);
+    const std::uint64_t grains = (warps + grain - 1) / grain;
     std::vector<WindowPlace> places;
     std::uint64_t turn = 0;
     for (std::uint32_t i = 0; i < count; ++i) {

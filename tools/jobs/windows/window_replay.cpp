@@ -146,12 +146,15 @@ private:
     double unfilled_share_ = 1;
 };
 
-/// Returns the warps that it traced.
+/// Returns the warps that it traced. The last group of a picture may be shorter, so that every warp is in one group.
 std::uint64_t count_work(WarpStream& stream, const BlockPlan& plan, const WindowSizes& sizes, WorkCount& work) {
-    const std::uint32_t group = std::min(sizes.work_warps, stream.warps());
-    for (const WindowPlace& place : plan.work)
+    std::uint64_t traced = 0;
+    for (const WindowPlace& place : plan.work) {
+        const std::uint32_t group = std::min(sizes.work_warps, stream.warps() - place.warp);
         for (std::uint32_t i = 0; i < group; ++i) work.add(stream.trace(stream.number(place) + i));
-    return std::uint64_t{group} * plan.work.size();
+        traced += group;
+    }
+    return traced;
 }
 
 /// One SM as if it were alone with its share of the launch: of every `sms` CTAs the first, as many before the counted

@@ -65,12 +65,13 @@ private:
 
 /// What is asked of level `last` is what SMs' own caches miss; what it misses is told by windows of the whole GPU. A
 /// window that asks more of it than SMs do on average misses more, but not in proportion, for it also finds more there:
-/// the square root is the control that left the least scatter (docs/estimates.md).
+/// so half of the misses are those of the windows, the other half their miss rate of what SMs ask. Both halves are
+/// unbiased, as a root of the two requests, which scatters as little, is not (docs/estimates.md).
 cachesim::Counters joined(const cachesim::Counters& of_sm, const cachesim::Counters& of_gpu, std::size_t last) {
     cachesim::Counters c = of_sm;
     const auto asked = static_cast<double>(of_sm.levels[last].sectors);
     const auto asked_in_windows = static_cast<double>(of_gpu.levels[last].sectors);
-    const cachesim::Counters below = scaled(of_gpu, asked_in_windows > 0 ? std::sqrt(asked / asked_in_windows) : 1);
+    const cachesim::Counters below = scaled(of_gpu, asked_in_windows > 0 ? (1 + asked / asked_in_windows) / 2 : 1);
     const std::uint64_t missed = below.levels[last].sectors - below.levels[last].hits;
     c.levels[last].hits = c.levels[last].sectors - std::min(c.levels[last].sectors, missed);
     c.dram_sectors = below.dram_sectors;
