@@ -21,17 +21,19 @@ struct Verdict {
     }
 };
 
-Verdict judge(const ServedRequest& request, const ShadowCache::Answer& shadow) {
-    const std::uint32_t missing = request.missing, again = missing & ~shadow.never_held;
-    return {request.asked, missing & shadow.never_held, again & shadow.absent, again & ~shadow.absent,
+/// `first`: those of the missing sectors that no cache can have held.
+Verdict judge(const ServedRequest& request, const ShadowCache::Answer& shadow, std::uint32_t first) {
+    const std::uint32_t missing = request.missing, again = missing & ~first;
+    return {request.asked, first, again & shadow.absent, again & ~shadow.absent,
             request.asked & ~missing & shadow.absent};
 }
 
 }  // namespace
 
 Explainer::Explainer(const Gpu& gpu, const std::vector<traces::Region>& regions, const ElementDepth& depth,
-                     const LanePixels* pixels)
-    : l1_per_sm_(gpu.l1_per_sm),
+                     const LanePixels* pixels, History history)
+    : history_(history),
+      l1_per_sm_(gpu.l1_per_sm),
       warps_per_cta_(gpu.warps_per_cta),
       sectors_per_line_(gpu.l1().line_bytes / gpu.l1().sector_bytes),
       line_bytes_(gpu.l1().line_bytes),
@@ -69,11 +71,12 @@ void Explainer::explain(std::size_t level, const ServedRequest& request) {
         shadows_[level][cache].look_up(ids_.id(request.address / line_bytes_, region), request.asked, request.missing);
     if (level == 0) find_owners(request, cache, shadow.number);
     if (!request.counted) return;
-    const Verdict verdict = judge(request, shadow);
+    // What a full cache has not held since the replay began was asked for longer ago than it keeps anything.
+    const bool touched_before = history_ == History::endless && shadows_[level][cache].is_full();
+    const Verdict verdict = judge(request, shadow, touched_before ? 0 : request.missing & shadow.never_held);
 
     LevelFindings& found = findings_.levels[level];
-    verdict.add_to(found.by_kind[static_cast<unsigned>(request.kind)]);
-    verdict.add_to(found.by_ray[static_cast<unsigned>(request.ray) * LevelFindings::bounces + request.bounce]);
+    verdict.add_to(found.of_group(LevelFindings::place(request.ray, request.bounce), request.kind));
     if (depth_.known()) {
         std::uint32_t left = request.asked;
         log_.for_each_lane(request, [&](unsigned, std::uint32_t element, std::uint32_t sectors) {

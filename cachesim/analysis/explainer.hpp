@@ -25,12 +25,16 @@
 
 namespace raycache::cachesim {
 
+/// What came before the replay: nothing, so that the first touch of a sector is a compulsory miss; or the same kind of
+/// work without end, so that it is one only as long as the cache is not yet full: from then on it is a capacity miss.
+enum class History { launch, endless };
+
 class Explainer final : public RequestSink {
 public:
     /// For a replay of these regions on this GPU. `depth` must outlive this object, and so must `pixels`, null if no
     /// costs of pixels are wanted.
     Explainer(const Gpu&, const std::vector<traces::Region>& regions, const ElementDepth& depth,
-              const LanePixels* pixels = nullptr);
+              const LanePixels* pixels = nullptr, History = History::launch);
 
     /// Complete after Replay::finish().
     const Findings& findings() const { return findings_; }
@@ -45,6 +49,7 @@ private:
     void explain(std::size_t level, const ServedRequest&);
     void find_owners(const ServedRequest&, std::size_t cache, std::uint32_t line);
 
+    History history_;
     std::uint32_t l1_per_sm_, warps_per_cta_, sectors_per_line_, line_bytes_;
     LineIds ids_;
     const ElementDepth& depth_;

@@ -13,13 +13,26 @@ MissCounts& MissCounts::operator+=(const MissCounts& other) {
 
 MissCounts LevelFindings::all() const {
     MissCounts sum;
-    for (const MissCounts& c : by_kind) sum += c;
+    for (const MissCounts& c : by_group) sum += c;
+    return sum;
+}
+
+MissCounts LevelFindings::by_ray(std::size_t place) const {
+    MissCounts sum;
+    for (std::size_t kind = 0; kind < traces::object_kinds; ++kind)
+        sum += by_group[place * traces::object_kinds + kind];
+    return sum;
+}
+
+MissCounts LevelFindings::by_kind(traces::ObjectKind kind) const {
+    MissCounts sum;
+    for (std::size_t i = static_cast<std::size_t>(kind); i < by_group.size(); i += traces::object_kinds)
+        sum += by_group[i];
     return sum;
 }
 
 LevelFindings& LevelFindings::operator+=(const LevelFindings& other) {
-    for (std::size_t i = 0; i < by_kind.size(); ++i) by_kind[i] += other.by_kind[i];
-    for (std::size_t i = 0; i < by_ray.size(); ++i) by_ray[i] += other.by_ray[i];
+    for (std::size_t i = 0; i < by_group.size(); ++i) by_group[i] += other.by_group[i];
     for (std::size_t i = 0; i < by_depth.size(); ++i) by_depth[i] += other.by_depth[i];
     return *this;
 }

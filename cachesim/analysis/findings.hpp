@@ -1,7 +1,7 @@
 // What an explanation counts beside the traffic itself: plain numbers, added up over launches in any order.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,16 +23,25 @@ struct MissCounts {
     bool operator==(const MissCounts&) const = default;
 };
 
-/// All caches of one level together. Each cut adds up to the whole, except by_depth: not everything has a depth.
+/// All caches of one level together. Each cut adds up to the whole, except by_depth: not everything
+/// has a depth.
 struct LevelFindings {
     static constexpr unsigned bounces = traces::max_bounce + 1;
     static constexpr unsigned depths = 255;
+    static constexpr unsigned rays = traces::ray_types * bounces;
 
-    std::array<MissCounts, traces::object_kinds> by_kind{};  ///< index: traces::ObjectKind
-    /// Index: ray type * bounces + bounce.
-    std::vector<MissCounts> by_ray = std::vector<MissCounts>(std::size_t{traces::ray_types} * bounces);
+    /// Of the rays of a type and bounce, on behalf of objects of a kind: index place() * object_kinds + kind.
+    std::vector<MissCounts> by_group = std::vector<MissCounts>(std::size_t{rays} * traces::object_kinds);
     std::vector<MissCounts> by_depth = std::vector<MissCounts>(depths);  ///< index: ElementDepth
 
+    static constexpr std::size_t place(traces::RayType ray, unsigned bounce) {
+        return static_cast<std::size_t>(ray) * bounces + bounce;
+    }
+    MissCounts& of_group(std::size_t place, traces::ObjectKind kind) {
+        return by_group[place * traces::object_kinds + static_cast<std::size_t>(kind)];
+    }
+    MissCounts by_ray(std::size_t place) const;
+    MissCounts by_kind(traces::ObjectKind) const;
     MissCounts all() const;
     LevelFindings& operator+=(const LevelFindings&);
     bool operator==(const LevelFindings&) const = default;

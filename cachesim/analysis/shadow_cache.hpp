@@ -38,6 +38,8 @@ public:
         return answer;
     }
 
+    /// Whether the fully associative cache has no room left.
+    bool is_full() const { return places_.size() == lines_; }
     /// Lines ever looked up.
     std::size_t lines_seen() const { return count_; }
 

@@ -21,17 +21,23 @@ std::span<const NamedIdeal> idealised_replays() { return replays; }
 
 Estimate SpeedUp::value() const {
     const std::vector<double> ones(base_cycles.size(), 1.0);
-    return ratio_to_baseline({base_cycles, ones}, {other_cycles, ones});
+    return widened(ratio_to_baseline({base_cycles, ones}, {other_cycles, ones}), widening);
 }
 
-Estimate gain(const std::vector<double>& as_modelled, const std::vector<double>& idealised) {
-    return product_of_powers({{as_modelled, 1}, {idealised, -1}});
+Estimate SpeedUp::base_gain(const SpeedUp& as_modelled) const {
+    return widened(product_of_powers({{as_modelled.base_cycles, 1}, {base_cycles, -1}}), widening);
+}
+
+Estimate SpeedUp::other_gain(const SpeedUp& as_modelled) const {
+    return widened(product_of_powers({{as_modelled.other_cycles, 1}, {other_cycles, -1}}), widening);
 }
 
 Estimate locality_part(const std::vector<SpeedUp>& all) {
     const SpeedUp &real = all.front(), &perfect = all.at(1);
-    return product_of_powers(
-        {{real.base_cycles, 1}, {real.other_cycles, -1}, {perfect.base_cycles, -1}, {perfect.other_cycles, 1}});
+    return widened(
+        product_of_powers(
+            {{real.base_cycles, 1}, {real.other_cycles, -1}, {perfect.base_cycles, -1}, {perfect.other_cycles, 1}}),
+        real.widening);
 }
 
 }  // namespace raycache::cachesim

@@ -28,14 +28,14 @@ struct SpeedUp {
     NamedIdeal replay;
     TimedStatistics base, other;
     std::vector<double> base_cycles, other_cycles;  ///< of each sample index, in the same order
+    double widening = 1;                            ///< of all intervals: WindowSample::widening
 
     /// Cycles of the base over those of the other; above 1 the other is faster.
     Estimate value() const;
+    /// How much faster each trace is with this cost taken away than as modelled.
+    Estimate base_gain(const SpeedUp& as_modelled) const;
+    Estimate other_gain(const SpeedUp& as_modelled) const;
 };
-
-/// How much faster a trace is with one cost taken away than as modelled: cycles of each sample index, in the same
-/// order.
-Estimate gain(const std::vector<double>& as_modelled, const std::vector<double>& idealised);
 
 /// Of a predicted speed-up, the factor that perfect caches leave out: value() as modelled over that with a perfect L1,
 /// from all of idealised_replays() in their order.

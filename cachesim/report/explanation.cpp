@@ -30,12 +30,20 @@ std::vector<Counters> ExplainedTrace::by_launch() const {
     return all;
 }
 
-std::optional<Factors> Explanation::factors() const {
-    return traffic_factors(base.by_launch(), other.by_launch(), caches());
+std::optional<Factors> Explanation::factors_of(const std::vector<Counters>& of_base,
+                                               const std::vector<Counters>& of_other) const {
+    auto factors = traffic_factors(of_base, of_other, caches());
+    if (factors) factors->widen(widening());
+    return factors;
+}
+
+Estimate Explanation::ratio_of(TrafficKey key, const std::vector<Counters>& of_base,
+                               const std::vector<Counters>& of_other) const {
+    return widened(cachesim::ratio_of(traffic_figures[key.index], of_base, of_other, caches()), widening());
 }
 
 Estimate ratio(const Explanation& e, TrafficKey key) {
-    return ratio_of(traffic_figures[key.index], e.base.by_launch(), e.other.by_launch(), e.caches());
+    return e.ratio_of(key, e.base.by_launch(), e.other.by_launch());
 }
 
 Difference difference_of(const Explanation& e) {
@@ -46,6 +54,7 @@ Difference difference_of(const Explanation& e) {
         traffic_figures[TrafficKey("dram_compulsory_share").index].value(e.other.totals(), e.caches());
     d.dram_compulsory_share = std::isfinite(compulsory) ? compulsory : 0;
     d.traced = e.base.launches.size();
+    d.windows = e.windows;
     d.spp = e.spp;
     if (!e.speed_ups.empty()) d.speed_up = e.speed_ups.front().value();
     return d;
@@ -80,7 +89,9 @@ std::string sentence(const Explanation& e) {
     std::string text = fmt::format("{} reads {}", e.other.name, fmt::join(parts, "; "));
     text += fmt::format("; with equal miss rates x{} of the DRAM bytes would remain, the miss rates give x{}",
                         with_interval(d.factors->equal_miss_rates, 3), with_interval(d.factors->cache_locality(), 3));
-    if (!d.bytes.back().half_width) return text + "; from one sample index, so without a confidence interval.";
+    if (!d.bytes.back().half_width)
+        return text + fmt::format("; from one {}, so without a confidence interval.",
+                                  e.windows ? "block of windows" : "sample index");
     d.speed_up.reset();  // the sentence is about bytes
     return text + (any_certain ? "." : "; " + remedy(d) + ".");
 }

@@ -35,9 +35,16 @@ struct Explanation {
     /// `no_time` says why (no_time_note()).
     std::vector<SpeedUp> speed_ups;
     std::string no_time;
+    /// Where the launches are blocks of windows: the last cache is full if it is for both; speed_ups are as wide.
+    std::optional<WindowSample> windows{};
 
+    double widening() const { return windows ? windows->widening : 1; }
     /// Of `other` over `base`; none where a quotient has no value.
-    std::optional<Factors> factors() const;
+    std::optional<Factors> factors() const { return factors_of(base.by_launch(), other.by_launch()); }
+    /// The same of a part of both.
+    std::optional<Factors> factors_of(const std::vector<Counters>& base, const std::vector<Counters>& other) const;
+    /// What a figure that compares says of such a part.
+    Estimate ratio_of(TrafficKey, const std::vector<Counters>& base, const std::vector<Counters>& other) const;
     CacheUnits caches() const { return {base.findings.levels.size(), sector_bytes}; }
 };
 

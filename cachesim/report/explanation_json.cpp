@@ -35,14 +35,15 @@ Json level(const LevelFindings& found) {
     Json json{{"all", counts(found.all())}};
     Json& by_object = json["by_object"] = Json::object();
     for (const traces::ObjectKindRole& role : traces::object_kind_roles) {
-        const MissCounts& of_kind = found.by_kind[static_cast<std::size_t>(role.kind)];
+        const MissCounts of_kind = found.by_kind(role.kind);
         if (of_kind.lookups) by_object[snake_case(role.name)] = counts(of_kind);
     }
     Json& by_ray = json["by_ray"] = Json::array();
-    for (std::size_t i = 0; i < found.by_ray.size(); ++i) {
-        if (!found.by_ray[i].lookups) continue;
+    for (std::size_t i = 0; i < LevelFindings::rays; ++i) {
+        const MissCounts of_ray = found.by_ray(i);
+        if (!of_ray.lookups) continue;
         Json row{{"ray", rays[i / LevelFindings::bounces]}, {"bounce", i % LevelFindings::bounces}};
-        row.update(counts(found.by_ray[i]));
+        row.update(counts(of_ray));
         by_ray.push_back(row);
     }
     Json& by_depth = json["by_depth"] = Json::array();
@@ -78,9 +79,10 @@ Counters sum_of(const std::vector<Counters>& by_launch) {
 }
 
 /// Both by sample index.
-Json factors(const std::vector<Counters>& base, const std::vector<Counters>& other, const CacheUnits& caches) {
+Json factors(const Explanation& e, const std::vector<Counters>& base, const std::vector<Counters>& other) {
+    const CacheUnits caches = e.caches();
     const Counters base_sum = sum_of(base), other_sum = sum_of(other);
-    const auto ratios = traffic_factors(base, other, caches);
+    const auto ratios = e.factors_of(base, other);
     Json json = Json::object();
     for (std::size_t i = 0; const IdentityTerm& term : identity_terms(caches.levels)) {
         json[term.key] = {{"base", json_of(term.value(base_sum, caches))},
@@ -100,7 +102,7 @@ Json groups(const Explanation& e) {
                 json.push_back({{"group", base.name},
                                 {"base", counters(sum_of(base.by_launch), e.caches())},
                                 {"other", counters(sum_of(other.by_launch), e.caches())},
-                                {"factors", factors(base.by_launch, other.by_launch, e.caches())}});
+                                {"factors", factors(e, base.by_launch, other.by_launch)}});
     return json;
 }
 
@@ -110,9 +112,10 @@ std::string to_json(const Explanation& e) {
     Json json{{"scene", e.scene}, {"gpu", e.gpu}, {"spp", e.spp}, {"sector_bytes", e.sector_bytes}};
     Json& samples = json["samples"] = Json::array();
     for (const LaunchStatistics& launch : e.base.launches) samples.push_back(launch.sample);
+    if (e.windows) json["windows"] = json_of(*e.windows);
     json["dram_bytes_ratio"] = json_of(ratio(e, "dram_bytes_ratio"));
     json["l2_bytes_ratio"] = json_of(ratio(e, "l2_bytes_ratio"));
-    json["factors"] = factors(e.base.by_launch(), e.other.by_launch(), e.caches());
+    json["factors"] = factors(e, e.base.by_launch(), e.other.by_launch());
     if (const auto all = e.factors()) {
         json["equal_miss_rates"] = json_of(all->equal_miss_rates);
         json["cache_locality"] = json_of(all->cache_locality());
@@ -125,8 +128,8 @@ std::string to_json(const Explanation& e) {
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},
                                  {"other_cycles", s.other.cycles},
-                                 {"base_gain", json_of(gain(e.speed_ups.front().base_cycles, s.base_cycles))},
-                                 {"other_gain", json_of(gain(e.speed_ups.front().other_cycles, s.other_cycles))},
+                                 {"base_gain", json_of(s.base_gain(e.speed_ups.front()))},
+                                 {"other_gain", json_of(s.other_gain(e.speed_ups.front()))},
                                  {"speed_up", json_of(s.value())}});
     if (!e.speed_ups.empty())
         json["speed_up_split"] = {{"with_perfect_caches", json_of(e.speed_ups.at(1).value())},

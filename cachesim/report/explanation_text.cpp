@@ -10,6 +10,7 @@
 #include "cachesim/report/speed_up_text.hpp"
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/waterfall.hpp"
+#include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
 
@@ -74,8 +75,8 @@ std::string identity_table(const Explanation& e, std::size_t width) {
                fmt::format("L1 visit miss rate: of the distinct sectors of each warp access. L1 %, hits of load "
                            "requests as Nsight Compute counts (l1tex__t_sector_hit_rate): {} and {}. cache locality: "
                            "the miss rates multiplied, DRAM sectors per sector asked for. ±: half width of the 95 % "
-                           "confidence interval over sample indices, paired.",
-                           hits(base), hits(other)));
+                           "confidence interval over {}, paired.",
+                           hits(base), hits(other), units_name(e.windows.has_value())));
 }
 
 std::string bars(const Explanation& e) {
@@ -111,9 +112,8 @@ std::string group_table(const Explanation& e, std::size_t width) {
         const double after = e.sector_bytes * quotient(other.dram_sectors, other.rays);
         const std::vector<Counters> none(group.by_launch.size());
         const auto& by_launch = match == others.end() ? none : match->by_launch;
-        const Estimate ratio =
-            ratio_of(traffic_figures[TrafficKey("dram_bytes_ratio").index], group.by_launch, by_launch, e.caches());
-        const auto factors = traffic_factors(group.by_launch, by_launch, e.caches());
+        const Estimate ratio = e.ratio_of("dram_bytes_ratio", group.by_launch, by_launch);
+        const auto factors = e.factors_of(group.by_launch, by_launch);
         std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(ratio.mean, 3)};
         std::vector<std::string> widths{"", "", "", half_width_cell(ratio, 3)};
         for (std::size_t i = 0; const IdentityTerm& term : identity_terms(e.caches().levels)) {
@@ -162,7 +162,10 @@ std::string class_table(const Explanation& e, std::size_t width) {
                "compulsory: the cache had never held the sector; capacity: a fully associative LRU cache of as "
                "many lines lacks it too; conflict: that cache would have had it; lucky: a hit where that cache "
                "would have missed. Classes in % of the misses, the rest in % of the look-ups, of which L1 has one for "
-               "each distinct sector of a warp access.");
+               "each distinct sector of a warp access." +
+               std::string(e.windows ? " In the steady state a full cache has held everything once: what it had not "
+                                       "held since the windows began counts as capacity."
+                                     : ""));
 }
 
 /// Where the misses are, one group of rows after the other.
@@ -184,12 +187,14 @@ std::string place_table(const Explanation& e, std::size_t width) {
     };
     row("all", &LevelFindings::all);
     for (const traces::ObjectKindRole& role : traces::object_kind_roles)
-        row(role.plural, [&](const LevelFindings& f) { return f.by_kind[static_cast<std::size_t>(role.kind)]; });
+        row(role.plural, [&](const LevelFindings& f) { return f.by_kind(role.kind); });
     constexpr const char* rays[] = {"camera", "bounce", "shadow"};
     for (unsigned ray = 0; ray < traces::ray_types; ++ray)
         for (unsigned bounce = 0; bounce < LevelFindings::bounces; ++bounce)
             row(ray == 0 && bounce == 0 ? "camera" : fmt::format("{} {}", rays[ray], bounce),
-                [=](const LevelFindings& f) { return f.by_ray[ray * LevelFindings::bounces + bounce]; });
+                [=](const LevelFindings& f) {
+                    return f.by_ray(LevelFindings::place(static_cast<traces::RayType>(ray), bounce));
+                });
     bool depth = false;
     for (unsigned first = 0; first < LevelFindings::depths; first += 4) {
         row(fmt::format("depth {}-{}", first, first + 3), [&](const LevelFindings& f) {
@@ -224,24 +229,33 @@ std::string sharing_table(const Explanation& e, std::size_t width) {
     return "\nSharing: to whom L1 hits are owed, sectors per ray\n\n" + table.text(width);
 }
 
+/// "sample indices 3, 17", or how many blocks of them windows are of.
+std::string samples_of(const Explanation& e) {
+    if (e.windows)
+        return fmt::format("steady state, from {} block{} of {} sample indices", e.windows->blocks,
+                           e.windows->blocks == 1 ? "" : "s", e.windows->indices);
+    std::string samples;
+    for (const LaunchStatistics& launch : e.base.launches)
+        samples += fmt::format("{}{}", samples.empty() ? "sample indices " : ", ", launch.sample);
+    return samples;
+}
+
 }  // namespace
 
 std::string to_text(const Explanation& e, std::size_t width) {
-    std::string samples;
-    for (const LaunchStatistics& launch : e.base.launches)
-        samples += fmt::format("{}{}", samples.empty() ? "" : ", ", launch.sample);
-    std::string text = paragraph(fmt::format("{} against {}: {}, N {}, sample indices {}, GPU {}", e.other.name,
-                                             e.base.name, e.scene, e.spp, samples, e.gpu));
+    std::string text = paragraph(fmt::format("{} against {}: {}, N {}, {}, GPU {}", e.other.name, e.base.name, e.scene,
+                                             e.spp, samples_of(e), e.gpu));
     text +=
         fmt::format("\nTraffic: {} B x the product of these factors\n\n", e.sector_bytes) + identity_table(e, width);
     text += bars(e);
     if (e.by != GroupBy::none) text += group_table(e, width);
     text += class_table(e, width) + place_table(e, width) + sharing_table(e, width);
     if (!e.speed_ups.empty())
-        text +=
-            "\nPredicted time, and what is left of the speed-up when one cost is taken away\n"
-            "(gain: how much faster than as modelled)\n\n" +
-            to_text(e.speed_ups, e.base.name, e.other.name, width);
+        text += fmt::format(
+                    "\nPredicted time, and what is left of the speed-up when one cost is taken away\n"
+                    "(gain: how much faster than as modelled{})\n\n",
+                    e.windows ? fmt::format("; cycles: of {} samples of the picture", e.windows->blocks) : "") +
+                to_text(e.speed_ups, e.base.name, e.other.name, width);
     text += '\n';
     if (!e.no_time.empty())
         text += paragraph(e.no_time + '.');
@@ -250,6 +264,8 @@ std::string to_text(const Explanation& e, std::size_t width) {
     text += paragraph(sentence(e));
     if (difference_of(e).dram_compulsory_share >= mostly_compulsory)
         text += paragraph("note: " + compulsory_note(e.gpu) + '.', 2);
+    if (e.windows) text += paragraph("note: " + window_note(*e.windows) + '.', 2);
+    if (e.windows && !e.windows->last_cache_full) text += paragraph("note: " + unfilled_note(e.gpu) + '.', 2);
     return text;
 }
 

@@ -25,10 +25,21 @@ inline Json json_of(const Verdict& v) {
     return {{"level", v.level ? Json(*v.level) : Json(nullptr)}, {"text", v.text}};
 }
 
-/// What a row is of: scene, strategy, GPU.
+inline Json json_of(const WindowSample& w) {
+    Json json{{"blocks", w.blocks}, {"indices_per_block", w.indices}, {"windows_per_block", w.windows}};
+    if (w.timed_windows) json["timed_windows_per_block"] = w.timed_windows;
+    json.update({{"unfilled_share", json_of(w.unfilled_share)},
+                 {"last_cache_full", w.last_cache_full},
+                 {"widening", json_of(w.widening)}});
+    return json;
+}
+
+/// What a row is of: scene, strategy, GPU, and windows where it is an estimate from some.
 inline Json names_of(const Origin& o) {
-    return {{"scene", o.scene},           {"strategy", o.strategy},     {"sequence", o.sequence},
-            {"parameters", o.parameters}, {"thread_map", o.thread_map}, {"gpu", o.gpu}};
+    Json json{{"scene", o.scene},           {"strategy", o.strategy},     {"sequence", o.sequence},
+              {"parameters", o.parameters}, {"thread_map", o.thread_map}, {"gpu", o.gpu}};
+    if (o.windows) json["windows"] = json_of(*o.windows);
+    return json;
 }
 /// The same with group and sample indices.
 inline Json row_names(const Row& row) {

@@ -67,12 +67,11 @@ std::string to_text(const std::vector<SpeedUp>& all, const std::string& base, co
     table.column("gain", Align::right);
     table.column("speed-up", Align::right);
     for (const SpeedUp& s : all) {
-        const auto times = [&](const std::vector<double>& modelled, const std::vector<double>& ideal) {
-            return &s == &all.front() ? std::string("1") : with_interval(gain(modelled, ideal), 2);
+        const auto times = [&](const Estimate& gain) {
+            return &s == &all.front() ? std::string("1") : with_interval(gain, 2);
         };
-        table.row({s.replay.name, fmt::format("{}", s.base.cycles), times(all.front().base_cycles, s.base_cycles),
-                   fmt::format("{}", s.other.cycles), times(all.front().other_cycles, s.other_cycles),
-                   with_interval(s.value(), 3)});
+        table.row({s.replay.name, fmt::format("{}", s.base.cycles), times(s.base_gain(all.front())),
+                   fmt::format("{}", s.other.cycles), times(s.other_gain(all.front())), with_interval(s.value(), 3)});
     }
     std::string text = table.text(width) + fmt::format("\nbase: {}; other: {}\n", base, other);
     for (const SpeedUp& s : all)

@@ -145,9 +145,7 @@ TEST_CASE("an explanation holds what its replay counts and nothing else, with ca
         replay.push(launch.warps[w]);
     }
     const Counters c = replay.finish().all();
-    MissCounts l1, l2;
-    for (const MissCounts& of : explainer.findings().levels[0].by_kind) l1 += of;
-    for (const MissCounts& of : explainer.findings().levels[1].by_kind) l2 += of;
+    const MissCounts l1 = explainer.findings().levels[0].all(), l2 = explainer.findings().levels[1].all();
     CHECK(c.levels[0].sectors > 100);
     CHECK(l1.lookups == c.levels[0].sectors);
     CHECK(l1.misses() == c.levels[0].sectors - c.levels[0].hits);

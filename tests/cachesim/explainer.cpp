@@ -122,15 +122,15 @@ TEST_CASE("the classes add up to the misses of the replay in every cut") {
     CHECK(l1.all().conflict > 0);
     CHECK(l1.all().lucky_hits > 0);
     for (const RayGroup& group : e.statistics.groups) {
-        const std::size_t index = static_cast<unsigned>(group.ray) * LevelFindings::bounces + group.bounce;
-        CHECK(l1.by_ray[index].lookups == group.all().levels[0].sectors);
-        CHECK(l1.by_ray[index].misses() == group.all().levels[1].sectors);
-        CHECK(l2.by_ray[index].misses() == group.all().dram_sectors);
+        const std::size_t place = LevelFindings::place(group.ray, group.bounce);
+        CHECK(l1.by_ray(place).lookups == group.all().levels[0].sectors);
+        CHECK(l1.by_ray(place).misses() == group.all().levels[1].sectors);
+        CHECK(l2.by_ray(place).misses() == group.all().dram_sectors);
     }
     for (unsigned kind = 0; kind < traces::object_kinds; ++kind) {
         std::uint64_t misses = 0;
         for (const RayGroup& group : e.statistics.groups) misses += group.by_kind[kind].dram_sectors;
-        CHECK(l2.by_kind[kind].misses() == misses);
+        CHECK(l2.by_kind(static_cast<traces::ObjectKind>(kind)).misses() == misses);
     }
 }
 
@@ -201,7 +201,7 @@ TEST_CASE("misses are charged to the depth of the object that was read") {
     const LevelFindings& l1 = e.findings.levels[0];
     CHECK(l1.by_depth[0] == MissCounts{2, 2, 0, 0, 0});
     CHECK(l1.by_depth[1] == MissCounts{4, 4, 0, 0, 0});
-    CHECK(l1.by_kind[2] == MissCounts{1, 1, 0, 0, 0});
+    CHECK(l1.by_kind(traces::ObjectKind{2}) == MissCounts{1, 1, 0, 0, 0});
 }
 
 TEST_CASE("costs go in equal parts to the pixels of the lanes that asked for a sector") {

@@ -97,7 +97,7 @@ TEST_CASE("an explanation has a row for each kind that was looked up") {
         for (ExplainedTrace* side : {&e.base, &e.other}) {
             side->launches = {counted(one_access(role.kind))};
             side->findings.levels.resize(2);
-            side->findings.levels[0].by_kind[static_cast<std::size_t>(role.kind)].lookups = 2;
+            side->findings.levels[0].of_group(0, role.kind).lookups = 2;
         }
         const auto found = nlohmann::json::parse(to_json(e))["base"]["levels"]["l1"]["by_object"];
         REQUIRE(found.size() == 1);

@@ -95,6 +95,14 @@ TEST_CASE("what remains of a speed-up is put down to what points its way, and it
     CHECK(*part.half_width > 0.05);
     CHECK_THAT(sentence(all), Contains("what the caches add, 1.25x ±"));
     CHECK(all[0].value().mean == Approx(part.mean * all[1].value().mean).epsilon(1e-12));
-    CHECK(gain({200, 300}, {100, 150}).mean == 2);
-    CHECK(*gain({200, 300}, {100, 150}).half_width == Approx(0).margin(1e-12));
+    SpeedUp modelled = all[0], ideal = all[1];
+    modelled.base_cycles = modelled.other_cycles = {200, 300};
+    ideal.base_cycles = {100, 150};
+    ideal.other_cycles = {100, 200};
+    CHECK(ideal.base_gain(modelled).mean == 2);
+    CHECK(*ideal.base_gain(modelled).half_width == Approx(0).margin(1e-12));
+    const double width = *ideal.other_gain(modelled).half_width;
+    CHECK(width > 0.1);
+    ideal.widening = 1.5;
+    CHECK(*ideal.other_gain(modelled).half_width == Approx(1.5 * width));
 }

@@ -5,6 +5,7 @@
 
 #include "tools/jobs/costs.hpp"
 #include "tools/jobs/explain_launches.hpp"
+#include "tools/jobs/windows/explain_windows.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -20,10 +21,14 @@ void ExplainJob::check() const {
                                      names.size()));
     }
     launches.check();
+    if (!estimate.windows) return;
+    check_windows(launches, estimate);
+    if (pixels) throw UsageError("heat maps of windows; expected whole launches: windows leave most pixels out");
 }
 
 ExplainResult run(const ExplainJob& job, const cachesim::Gpu& gpu, Observer& observer, const FileNames& outputs) {
     job.check();
+    if (job.estimate.windows) return explain_windows(job, gpu, observer, outputs);
     if (!job.launches.of_traces()) {
         double seconds = 0;
         for (const auto& s : job.launches.captures())
@@ -35,7 +40,8 @@ ExplainResult run(const ExplainJob& job, const cachesim::Gpu& gpu, Observer& obs
     for (std::size_t i = 0; i < 2; ++i) refuse_wavefront(*sources[i].header, launches.names()[i], "explain");
     ExplainRequest request;
     request.sources = {&sources[0], &sources[1]};
-    request.names = {launches.names()[0], launches.names()[1]};
+    request.pair = {{{sources[0].header, sources[0].strategy, launches.names()[0]},
+                     {sources[1].header, sources[1].strategy, launches.names()[1]}}};
     request.gpu = gpu;
     request.by = job.by;
     request.timed = job.timed;

@@ -7,6 +7,7 @@
 #include "tools/jobs/gpu_settings.hpp"
 #include "tools/jobs/heat_map.hpp"
 #include "tools/jobs/launches.hpp"
+#include "tools/jobs/windows/estimate.hpp"
 
 namespace raycache::tools {
 
@@ -16,8 +17,11 @@ struct ExplainJob {
     cachesim::GroupBy by = cachesim::GroupBy::none;
     bool timed = true;    ///< predict times, if the GPU has a [timing]
     bool pixels = false;  ///< also heat maps
+    /// Without `baseline`: it is the first of the launches. No windows with `pixels`.
+    EstimateSettings estimate{};
 
-    /// Throws UsageError unless the launches are two, and as LaunchSettings::check() does.
+    /// Throws UsageError unless the launches are two, for heat maps of windows, and as LaunchSettings::check() and, with
+    /// windows, check_windows() do.
     void check() const;
 };
 

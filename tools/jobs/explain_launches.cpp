@@ -1,6 +1,5 @@
 #include "tools/jobs/explain_launches.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -11,67 +10,13 @@
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
-#include "cachesim/report/origin.hpp"
 #include "tools/jobs/heat_map.hpp"
-#include "traces/error.hpp"
-#include "traces/printable.hpp"
 
 namespace raycache::tools {
 
 namespace {
 
 using traces::Header;
-using traces::Provenance;
-
-std::string list(const std::vector<std::uint32_t>& samples) {
-    constexpr std::size_t most = 8;
-    const std::vector<std::uint32_t> shown(
-        samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(std::min(most, samples.size())));
-    return fmt::format("{}{}", fmt::join(shown, ", "), samples.size() > most ? ", …" : "");
-}
-
-/// Ratios per ray mean something only between traces of the same rays but for the strategy.
-void check_comparable(const ExplainRequest& request) {
-    const Header &base = *request.sources[0]->header, &other = *request.sources[1]->header;
-    const Provenance &a = base.provenance, &b = other.provenance;
-    const auto same = [&](const char* what, const auto& expected, const auto& found) {
-        if (expected == found) return;
-        throw Error(fmt::format("{}: expected the {} of {}, {}, found {}; capture both alike but for the strategy",
-                                request.names[1], what, request.names[0], expected, found));
-    };
-    same("scene", a.scene, b.scene);
-    same("content of the scene", fmt::format("{:#018x}", a.scene_hash), fmt::format("{:#018x}", b.scene_hash));
-    same("camera", a.camera, b.camera);
-    same("resolution", fmt::format("{}x{}", a.width, a.height), fmt::format("{}x{}", b.width, b.height));
-    same("number of bounces", a.bounces, b.bounces);
-    if (!cachesim::same_work_per_launch(a.thread_map, b.thread_map)) same("thread map", a.thread_map, b.thread_map);
-    if (base.launches == other.launches) return;
-    const bool common = std::any_of(base.launches.begin(), base.launches.end(), [&](std::uint32_t sample) {
-        return std::find(other.launches.begin(), other.launches.end(), sample) != other.launches.end();
-    });
-    throw Error(
-        fmt::format("{}: expected the sample indices of {}, {}, found {}{}; capture both with the same --spp, "
-                    "--seed and --trace-samples",
-                    request.names[1], request.names[0], list(base.launches), common ? "" : "none of them but ",
-                    list(other.launches)));
-}
-
-/// What tells each trace from the other: its strategy, and whatever else they were not given alike.
-std::array<std::string, 2> names_of(const ExplainRequest& request) {
-    const Provenance &a = request.sources[0]->header->provenance, &b = request.sources[1]->header->provenance;
-    std::array<std::string, 2> names;
-    const auto add = [&](const std::string& first, const std::string& second) {
-        if (first == second) return;
-        for (std::size_t i = 0; i < 2; ++i) names[i] += (names[i].empty() ? "" : " ") + (i == 0 ? first : second);
-    };
-    add(to_string(request.sources[0]->strategy), to_string(request.sources[1]->strategy));
-    if (a.decorrelation == b.decorrelation) add(a.parameters, b.parameters);
-    add(a.sequence, b.sequence);
-    add(fmt::format("N={}", a.spp), fmt::format("N={}", b.spp));
-    add(a.layout, b.layout);
-    if (names[0].empty() || names[1].empty()) return {"base", "other"};
-    return {printable_line(names[0]), printable_line(names[1])};
-}
 
 /// The warps that are handed to all replays of a launch before the next are read.
 constexpr std::size_t warps_at_once = 64;
@@ -85,34 +30,22 @@ void for_each(std::size_t count, const Use& use) {
 }  // namespace
 
 Explained explain(const ExplainRequest& request, Observer& observer) {
-    check_comparable(request);
-    const auto names = names_of(request);
     const cachesim::Gpu& gpu = request.gpu;
     const Header& first = *request.sources[0]->header;
     Explained done;
     cachesim::Explanation& explanation = done.explanation;
-    explanation.scene = printable_line(first.provenance.scene);
-    explanation.gpu = gpu.name;
-    explanation.spp = first.provenance.spp;
-    explanation.sector_bytes = gpu.l1().sector_bytes;
-    explanation.by = request.by;
+    explanation = begin_explanation(request.pair, gpu, request.by);
 
     std::array<std::unique_ptr<cachesim::ElementDepth>, 2> depths;
     std::array<cachesim::LanePixels, 2> pixels;
     std::array<cachesim::ExplainedTrace*, 2> traces{&explanation.base, &explanation.other};
     for (std::size_t t = 0; t < 2; ++t) {
         const Header& header = *request.sources[t]->header;
-        if (request.pixels) pixels[t] = lane_pixels(header, request.names[t]);
+        if (request.pixels) pixels[t] = lane_pixels(header, request.pair[t].name);
         depths[t] = std::make_unique<cachesim::ElementDepth>(header.regions);
-        traces[t]->name = names[t];
         traces[t]->launches.resize(header.launches.size());
     }
-    if (gpu.timing && request.timed) explanation.no_time = cachesim::no_time_note(gpu);
-    if (gpu.timing && request.timed && explanation.no_time.empty()) {
-        const std::vector<double> none(first.launches.size());
-        for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
-            explanation.speed_ups.push_back({ideal, {}, {}, none, none});
-    }
+    if (gpu.timing && request.timed) predict_speed_ups(explanation, gpu, first.launches.size());
 
     const Stage stage(observer, "explain", 2 * std::uint64_t{first.warps_per_launch} * first.launches.size(), "rays");
     std::mutex mutex;

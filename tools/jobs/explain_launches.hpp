@@ -3,12 +3,11 @@
 #pragma once
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "cachesim/analysis/pixel_costs.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/explanation.hpp"
+#include "tools/jobs/explained_pair.hpp"
 #include "tools/jobs/launch_source.hpp"
 #include "tools/jobs/observer.hpp"
 
@@ -16,7 +15,7 @@ namespace raycache::tools {
 
 struct ExplainRequest {
     std::array<const LaunchSource*, 2> sources;  ///< base, other
-    std::array<std::string, 2> names;            ///< of files or strategies, for messages
+    ExplainedPair pair;                          ///< the same
     cachesim::Gpu gpu;
     cachesim::GroupBy by = cachesim::GroupBy::none;
     bool timed = true;    ///< whether predicted times are wanted, if the GPU has a [timing]
@@ -28,7 +27,7 @@ struct Explained {
     std::array<cachesim::PixelCosts, 2> costs;  ///< of all launches; empty if not wanted
 };
 
-/// Throws Error if the traces are not of the same scene, view and sample indices. The result does not depend on the
+/// Throws Error as begin_explanation() does. The result does not depend on the
 /// number of threads.
 Explained explain(const ExplainRequest&, Observer&);
 

@@ -13,14 +13,16 @@ ReplayResult run(const ReplayJob& job, const std::vector<cachesim::Gpu>& gpus, O
         observer.resumable(
             "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "
             "those");
-        double seconds = 0;
-        for (const auto& s : job.launches.captures())
-            seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, job.timed);
-        observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
     }
     if (job.estimate.windows) {
         Estimated estimated = estimate(job.launches, job.estimate, gpus, job.timed, observer, outputs);
         return {std::move(estimated.subject), std::move(estimated.result.traffic), std::move(estimated.result.times)};
+    }
+    if (!job.launches.of_traces()) {
+        double seconds = 0;
+        for (const auto& s : job.launches.captures())
+            seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, job.timed);
+        observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
     }
     const Launches launches(job.launches, outputs, observer);
     ReplayResult result;

@@ -36,7 +36,7 @@ public:
             expect(trace->findings.levels.size() == levels, "findings of as many levels for both traces");
             const cachesim::LevelFindings usual;
             for (const auto& level : trace->findings.levels)
-                expect(level.by_ray.size() == usual.by_ray.size() && level.by_depth.size() == usual.by_depth.size(),
+                expect(level.by_group.size() == usual.by_group.size() && level.by_depth.size() == usual.by_depth.size(),
                        "findings by ray and by depth");
         }
         const auto ideal = cachesim::idealised_replays();

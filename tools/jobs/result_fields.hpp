@@ -208,8 +208,7 @@ struct Codec<std::vector<cachesim::MissCounts>> {
 template <>
 struct Fields<cachesim::LevelFindings> {
     using S = cachesim::LevelFindings;
-    static constexpr std::tuple all{Field{"by_kind", &S::by_kind}, Field{"by_ray", &S::by_ray},
-                                    Field{"by_depth", &S::by_depth}};
+    static constexpr std::tuple all{Field{"by_group", &S::by_group}, Field{"by_depth", &S::by_depth}};
 };
 
 template <>
@@ -249,18 +248,22 @@ struct Codec<cachesim::NamedIdeal> {
 template <>
 struct Fields<cachesim::SpeedUp> {
     using S = cachesim::SpeedUp;
-    static constexpr std::tuple all{Field{"replay", &S::replay}, Field{"base", &S::base}, Field{"other", &S::other},
-                                    Field{"base_cycles", &S::base_cycles}, Field{"other_cycles", &S::other_cycles}};
+    static constexpr std::tuple all{Field{"replay", &S::replay},
+                                    Field{"base", &S::base},
+                                    Field{"other", &S::other},
+                                    Field{"base_cycles", &S::base_cycles},
+                                    Field{"other_cycles", &S::other_cycles},
+                                    Field{"widening", &S::widening}};
 };
 
 template <>
 struct Fields<cachesim::Explanation> {
     using S = cachesim::Explanation;
-    static constexpr std::tuple all{Field{"scene", &S::scene},    Field{"gpu", &S::gpu},
-                                    Field{"spp", &S::spp},        Field{"sector_bytes", &S::sector_bytes},
-                                    Field{"by", &S::by},          Field{"base", &S::base},
-                                    Field{"other", &S::other},    Field{"speed_ups", &S::speed_ups},
-                                    Field{"no_time", &S::no_time}};
+    static constexpr std::tuple all{Field{"scene", &S::scene},     Field{"gpu", &S::gpu},
+                                    Field{"spp", &S::spp},         Field{"sector_bytes", &S::sector_bytes},
+                                    Field{"by", &S::by},           Field{"base", &S::base},
+                                    Field{"other", &S::other},     Field{"speed_ups", &S::speed_ups},
+                                    Field{"no_time", &S::no_time}, Field{"windows", &S::windows}};
 };
 
 template <>

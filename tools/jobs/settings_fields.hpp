@@ -121,8 +121,9 @@ struct Fields<ReplayJob> {
 template <>
 struct Fields<ExplainJob> {
     using S = ExplainJob;
-    static constexpr std::tuple all{Field{"launches", &S::launches}, Field{"gpu", &S::gpu}, Field{"by", &S::by},
-                                    Field{"timed", &S::timed}, Field{"pixels", &S::pixels}};
+    static constexpr std::tuple all{
+        Field{"launches", &S::launches}, Field{"gpu", &S::gpu},       Field{"by", &S::by},
+        Field{"timed", &S::timed},       Field{"pixels", &S::pixels}, Field{"estimate", &S::estimate}};
 };
 
 template <>

@@ -36,12 +36,12 @@ double parse_percentage(const std::string& text, const std::string& what) {
     return percent / 100;
 }
 
-void EstimateOptions::add(Command& command) {
+void EstimateOptions::add(Command& command, const std::string& when_timed) {
     command.group("Certainty", true);
     command
-        .add_option("--target-error", target_error,
-                    "stop when the 95 % interval of every ratio to the baseline is that narrow (with --timed: of every "
-                    "speed-up)")
+        .add_option(
+            "--target-error", target_error,
+            fmt::format("stop when the 95 % interval of every ratio to the baseline is that narrow ({})", when_timed))
         ->check([](std::string& word) { parse_percentage(word, "--target-error"); })
         ->type_name("PERCENT")
         ->excludes({"--windows", "--exact", "--trace-samples"});
@@ -79,6 +79,12 @@ EstimateSettings EstimateOptions::settings(const Command& command, LaunchSetting
     }
     if (exact || is_given(command, "--trace-samples")) return settings;
     if (is_given(command, "--counters")) return settings;
+    if (is_given(command, "--heatmap")) {
+        why_exact =
+            "a heat map shows whole launches, so whole launches are replayed, each from cold caches; without --heatmap "
+            "the steady state is explained";
+        return settings;
+    }
     if (!has_windows(launches)) {
         why_exact = "a wavefront has no steady state to take windows from: whole launches are replayed";
         return settings;

@@ -15,9 +15,10 @@ struct EstimateOptions {
     std::uint64_t windows = 0;
     bool exact = false;
 
-    void add(Command&);
+    /// `when_timed`: an option that makes --target-error be about something else, and what.
+    void add(Command&, const std::string& when_timed);
 
-    /// From windows, unless the user asks for whole launches (--exact, --trace-samples, --counters) or something in
+    /// From windows, unless the user asks for whole launches (--exact, --trace-samples, --counters, --heatmap) or something in
     /// `launches` has no windows: then `why_exact` becomes a line to warn of. Sets the resolution of a real picture
     /// where the user gives none.
     EstimateSettings settings(const Command&, LaunchSettings&, std::string& why_exact) const;

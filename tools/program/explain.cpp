@@ -4,6 +4,7 @@
 #include "tools/jobs/explain_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/estimate_options.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/inputs.hpp"
@@ -30,6 +31,7 @@ struct Options {
     JsonOption json;
     WidthOption width;
     bool counts_only = false;
+    EstimateOptions estimate;
     ThreadOptions threads;
 };
 
@@ -72,9 +74,12 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
         for (const std::string& strategy : o->strategies)
             job.launches.cases.push_back({tracer::parse_strategy_name(strategy, parts), o->sequence, o->spp, {}, {}});
     }
+    std::string why_exact;
+    job.estimate = o->estimate.settings(*command, job.launches, why_exact);
     job.check();
     refuse_overwriting(inputs.traces, outputs);
-    return [o, command, job, gpu, outputs] {
+    return [o, command, job, gpu, outputs, why_exact] {
+        if (!why_exact.empty()) warn(why_exact);
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
         else
@@ -112,9 +117,12 @@ void add_explain(Program& program) {
     command->add_flag("--counts-only", o->counts_only, "no predicted times: several times as fast");
     command
         ->add_option("--heatmap", o->heat_map,
-                     "DRAM bytes, L1 visit miss rate and active lanes of each pixel; FILE.png shows them")
-        ->type_name("FILE.exr");
+                     "DRAM bytes, L1 visit miss rate and active lanes of each pixel; FILE.png shows them. Takes whole "
+                     "launches, as --exact")
+        ->type_name("FILE.exr")
+        ->excludes({"--windows", "--target-error", "--time-budget"});
     o->threads.add(*command);
+    o->estimate.add(*command, "--counts-only: of bytes; else of the speed-up");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);
     o->sampling.add_picture(*command);

@@ -12,6 +12,9 @@
 
 namespace raycache::tools {
 
+/// Of a strategy.
+inline constexpr std::uint32_t most_blocks = 512;
+
 struct EstimateSettings {
     bool windows = false;  ///< else whole launches, each from cold caches
     /// Half width of the 95 % interval of each ratio to the baseline (of each mean where nothing is compared), over
@@ -30,8 +33,10 @@ struct Estimated {
     Predicted result;  ///< times: only if asked for
 };
 
-/// Throws UsageError for traces, wavefronts and settings that make no sense; else as Launches does. The same result for
-/// any number of threads, unless there is a time budget.
+/// Throws UsageError for traces, wavefronts and settings that make no sense.
+void check_windows(const LaunchSettings&, const EstimateSettings&);
+
+/// Throws as check_windows() and as Launches do. The same result for any number of threads, unless there is a time budget.
 Estimated estimate(const LaunchSettings&, const EstimateSettings&, const std::vector<cachesim::Gpu>&, bool timed,
                    Observer&, const FileNames& outputs);
 

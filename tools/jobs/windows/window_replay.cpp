@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
+#include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
+#include "tools/jobs/windows/scaled_findings.hpp"
 #include "tools/jobs/windows/work_count.hpp"
 
 namespace raycache::tools {
@@ -81,16 +82,20 @@ private:
 class GpuWindows {
 public:
     GpuWindows(const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
-               const WindowSizes& sizes, bool timed)
+               const WindowSizes& sizes, const WindowReplays& wanted)
         : full_share_(sizes.unfilled_share),
           wave_(wave_warps(gpu)),
           counted_(cachesim::Replay(gpu, regions, sample), sizes.warm_up_waves * wave_, sizes.counted_waves * wave_,
                    wave_, sizes.windows) {
         // In time a window ends when the CTA behind it begins, and nothing needs to run after that.
-        if (timed)
-            timed_.emplace(cachesim::TimedReplay(gpu, regions, sample), sizes.timed_warm_up_waves * wave_,
-                           sizes.counted_waves * wave_, gpu.warps_per_cta,
-                           std::min(sizes.timed_windows, sizes.windows));
+        for (const cachesim::Idealised& ideal : wanted.timed)
+            timed_.emplace_back(cachesim::TimedReplay(gpu, regions, sample, ideal), sizes.timed_warm_up_waves * wave_,
+                                sizes.counted_waves * wave_, gpu.warps_per_cta,
+                                std::min(sizes.timed_windows, sizes.windows));
+        if (!wanted.depth) return;
+        explainer_ =
+            std::make_unique<cachesim::Explainer>(gpu, regions, *wanted.depth, nullptr, cachesim::History::endless);
+        counted_.replay().observe(*explainer_);
     }
 
     std::uint32_t wave() const { return wave_; }
@@ -99,20 +104,21 @@ public:
     /// `first`: of the first wave. It also brings the SMs of a timed replay out of step.
     void fill(const WarpPointer& warp, bool first) {
         counted_.replay().push(warp);
-        if (timed_ && first) timed_->replay().push(warp);
+        if (!first) return;
+        for (auto& timed : timed_) timed.replay().push(warp);
     }
     void end_wave() { note_fills(); }
 
     std::int64_t first() const { return counted_.first(); }
     std::int64_t end(std::uint32_t window) const {
-        return std::max(counted_.end(window), timed_ ? timed_->end(window) : 0);
+        return std::max(counted_.end(window), timed_.empty() ? 0 : timed_.front().end(window));
     }
     bool wants(std::uint32_t window, std::int64_t offset) const {
-        return counted_.wants(window, offset) || (timed_ && timed_->wants(window, offset));
+        return counted_.wants(window, offset) || (!timed_.empty() && timed_.front().wants(window, offset));
     }
     void push(const WarpPointer& warp, std::uint32_t window, std::int64_t offset) {
         counted_.push(warp, window, offset);
-        if (timed_) timed_->push(warp, window, offset);
+        for (auto& timed : timed_) timed.push(warp, window, offset);
     }
 
     BlockResult finish() {
@@ -120,11 +126,12 @@ public:
         result.counts = counted_.replay().finish();
         if (!is_full()) note_fills();
         result.unfilled_share = unfilled_share_;
-        if (timed_) {
-            const auto& batches = timed_->replay().batches();
-            result.times = batches.front();
-            for (std::size_t b = 1; b < batches.size(); ++b) result.times += batches[b];
+        for (auto& timed : timed_) {
+            const auto& batches = timed.replay().batches();
+            cachesim::TimedStatistics& times = result.times.emplace_back(batches.front());
+            for (std::size_t b = 1; b < batches.size(); ++b) times += batches[b];
         }
+        if (explainer_) result.findings = explainer_->findings();
         return result;
     }
 
@@ -141,7 +148,8 @@ private:
     double full_share_;
     std::uint32_t wave_;
     WindowedReplay<cachesim::Replay> counted_;
-    std::optional<WindowedReplay<cachesim::TimedReplay>> timed_;
+    std::vector<WindowedReplay<cachesim::TimedReplay>> timed_;
+    std::unique_ptr<cachesim::Explainer> explainer_;
     cachesim::LineFills before_;
     double unfilled_share_ = 1;
 };
@@ -224,7 +232,7 @@ std::uint32_t wave_warps(const cachesim::Gpu& gpu) {
 
 std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint32_t first_launch,
                                       const WindowPlan& windows, const BlockPlan& plan, const WindowSizes& sizes,
-                                      const std::vector<cachesim::Gpu>& gpus, bool timed) {
+                                      const std::vector<cachesim::Gpu>& gpus, const WindowReplays& wanted) {
     WarpStream stream(capture, first_launch, windows.launches());
     const auto& regions = capture.header().regions;
 
@@ -236,7 +244,7 @@ std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint3
 
     std::vector<GpuWindows> replays;
     replays.reserve(gpus.size());
-    for (const cachesim::Gpu& gpu : gpus) replays.emplace_back(gpu, regions, plan.first, sizes, timed);
+    for (const cachesim::Gpu& gpu : gpus) replays.emplace_back(gpu, regions, plan.first, sizes, wanted);
     fill_caches(stream, plan, replays);
     replay_windows(stream, plan, replays);
 
@@ -245,7 +253,8 @@ std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint3
     for (std::size_t g = 0; g < gpus.size(); ++g) {
         BlockResult& result = results.emplace_back(replays[g].finish());
         result.counts.groups = work.launch(replay_sm(stream, plan, gpus[g], regions), result.counts, gpus[g], scale);
-        if (timed) work.scale(result.times, scale);
+        for (cachesim::TimedStatistics& times : result.times) work.scale(times, scale);
+        if (wanted.depth) result.findings = scaled_findings(result.findings, result.counts);
     }
     return results;
 }

@@ -13,18 +13,28 @@
 #include <cstdint>
 #include <vector>
 
+#include "cachesim/analysis/element_depth.hpp"
+#include "cachesim/analysis/findings.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/statistics.hpp"
+#include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 #include "tools/jobs/windows/window_plan.hpp"
 #include "tracer/capture.hpp"
 
 namespace raycache::tools {
 
+/// What is asked beside the counts.
+struct WindowReplays {
+    std::vector<cachesim::Idealised> timed;         ///< a replay in time each; empty: no time
+    const cachesim::ElementDepth* depth = nullptr;  ///< of the capture, where findings are wanted, else null
+};
+
 /// What a block says of one GPU.
 struct BlockResult {
     cachesim::LaunchStatistics counts;
-    cachesim::TimedStatistics times;  ///< all 0 unless asked for
+    std::vector<cachesim::TimedStatistics> times;  ///< of WindowReplays::timed
+    cachesim::Findings findings;                   ///< scaled as the counts are; empty unless asked for
     /// Of the last cache's misses, those that took a way that held nothing, after the filling. Above
     /// WindowSizes::unfilled_share the scene fits in it, and what DRAM serves in the steady state is not known.
     double unfilled_share = 0;
@@ -34,7 +44,7 @@ struct BlockResult {
 /// Nothing depends on the other GPUs, or on threads. Throws Error as Replay does.
 std::vector<BlockResult> replay_block(const tracer::Capture&, std::uint32_t first_launch, const WindowPlan&,
                                       const BlockPlan&, const WindowSizes&, const std::vector<cachesim::Gpu>&,
-                                      bool timed);
+                                      const WindowReplays&);
 
 /// Warps that a GPU holds at once.
 std::uint32_t wave_warps(const cachesim::Gpu&);

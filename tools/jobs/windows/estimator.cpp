@@ -1,0 +1,218 @@
+#include "tools/jobs/windows/estimator.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <set>
+#include <utility>
+
+#include "tools/jobs/costs.hpp"
+#include "tools/jobs/windows/stop_rule.hpp"
+#include "tracer/sampling/pixel_place.hpp"
+#include "tracer/simt/thread_map.hpp"
+
+namespace raycache::tools {
+namespace {
+
+constexpr std::uint32_t first_look = 8;
+constexpr double all_error = 0.05;  ///< of a 95 % interval
+
+tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
+    return {s.thread_map, s.width, s.height, s.strategy.samples.spp, tracer::interleave_of(s.strategy.parameters)};
+}
+
+Estimator::Case make_case(const tracer::PreparedScene& scene, const WindowedStrategy& strategy,
+                          const WindowSizes& sizes, std::uint32_t blocks) {
+    tracer::CaptureSettings settings = strategy.capture;
+    const tracer::LaunchGrid grid = grid_of(settings);
+    const tracer::SampleSet& samples = settings.strategy.samples;
+    Estimator::Case c{{}, {samples.spp, grid.warps(), grid.samples_per_launch(), samples.seed, sizes}, {}, {}, {}, {},
+                      {}};
+    c.first = c.plan.draw(blocks);
+    for (const std::uint32_t first : c.first)
+        for (std::uint32_t launch = 0; launch < c.plan.launches(); ++launch)
+            settings.first_indices.push_back(first + launch * grid.samples_per_launch());
+    c.capture = std::make_unique<tracer::Capture>(scene, settings);
+    tracer::StrategyName name = tracer::strategy_name(c.capture->header().provenance);
+    name.thread_map = strategy.thread_map;
+    c.name = to_string(name);
+    return c;
+}
+
+std::string stage_name(std::uint32_t end) { return fmt::format("windows of {} blocks", end); }
+
+}  // namespace
+
+std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
+    std::vector<WindowedStrategy> all;
+    const auto captures = launches.captures();
+    for (std::size_t i = 0; i < captures.size(); ++i)
+        all.push_back({captures[i], launches.cases[i].strategy.thread_map});
+    return all;
+}
+
+Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<WindowedStrategy>& strategies,
+                     const EstimateSettings& settings, const std::vector<cachesim::Gpu>& gpus,
+                     std::vector<cachesim::Idealised> ideals, bool findings, Observer& observer)
+    : settings_(settings), gpus_(gpus), ideals_(std::move(ideals)), observer_(observer), error_of_look_(all_error) {
+    std::uint32_t blocks = most_blocks;
+    if (settings.window_count != 0) {
+        sizes_.windows = static_cast<std::uint32_t>(std::min<std::uint64_t>(sizes_.windows, settings.window_count / 2));
+        sizes_.timed_windows = std::min(sizes_.timed_windows, sizes_.windows);
+        blocks = static_cast<std::uint32_t>(settings.window_count / sizes_.windows);
+    }
+    for (const WindowedStrategy& strategy : strategies) {
+        Case& c = cases_.emplace_back(make_case(scene, strategy, sizes_, blocks));
+        if (!findings) continue;
+        c.depth = std::make_unique<cachesim::ElementDepth>(c.capture->header().regions);
+        c.findings.resize(gpus.size());
+    }
+}
+
+void Estimator::warn_of_pictures() const {
+    for (const cachesim::Gpu& gpu : gpus_) {
+        const std::uint32_t wave = wave_warps(gpu), picture = cases_.front().capture->header().warps_per_launch;
+        if (picture >= wave) continue;
+        observer_.warn(fmt::format(
+            "the picture has {} warps a sample and {} holds {} at once: several samples of it are under way together, "
+            "as where a renderer launches them in one go",
+            picture, gpu.name, wave));
+    }
+}
+
+/// That these blocks are to come.
+void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
+    double paths = sizes_.work_groups * sizes_.work_warps, longest = 0, replayed = 0, timed = 0;
+    for (const cachesim::Gpu& gpu : gpus_) {
+        const double wave = wave_warps(gpu), windows = (sizes_.warm_up_waves + sizes_.counted_waves) * wave;
+        const double of_sms = 2.0 * sizes_.sm_windows * gpu.warps_per_cta;
+        const double of_gpu = sizes_.windows * windows + 3 * wave;
+        paths += of_sms;
+        longest = std::max(longest, of_gpu);
+        replayed += of_sms + of_gpu;
+        timed += static_cast<double>(ideals_.size()) *
+                 (1 + sizes_.timed_windows * (sizes_.timed_warm_up_waves + sizes_.counted_waves)) * wave;
+    }
+    const double count = traces::warp_lanes * (end - begin) * static_cast<double>(cases_.size());
+    const std::uint32_t bounces = cases_.front().capture->settings().paths.bounces;
+    observer_.expect(stage_name(end), ideals_.empty() ? Work::replay : Work::timed_replay,
+                     window_cost(bounces, (paths + longest) * count, replayed * count, timed * count));
+}
+
+void Estimator::run_blocks(std::uint32_t end) {
+    const std::uint32_t begin = blocks_;
+    const std::size_t tasks = (end - begin) * cases_.size();
+    for (Case& c : cases_) c.blocks.resize(end);
+    const Stage stage(observer_, stage_name(end), tasks, "blocks");
+    std::mutex mutex;
+    tbb::parallel_for(
+        std::size_t{0}, tasks,
+        [&](std::size_t task) {
+            Case& c = cases_[task % cases_.size()];
+            const std::size_t block = begin + task / cases_.size();
+            std::vector<BlockResult>& results = c.blocks[block];
+            results = replay_block(*c.capture, static_cast<std::uint32_t>(block * c.plan.launches()), c.plan,
+                                   c.plan.block(block, c.first[block]), sizes_, gpus_, {ideals_, c.depth.get()});
+            const std::lock_guard lock(mutex);  // sums of whole numbers: in any order the same
+            for (std::size_t g = 0; g < c.findings.size(); ++g) c.findings[g] += std::exchange(results[g].findings, {});
+            stage.add(1, 1);
+        },
+        tbb::simple_partitioner());
+    blocks_ = end;
+}
+
+/// Looks at 8, 16, 32 … blocks. Look number k, from 1, may err in a share 0.05 / 2^k of all cases, so that all of them
+/// together err in less than 0.05: the union bound.
+void Estimator::run(const std::string& baseline) {
+    warn_of_pictures();
+    if (settings_.window_count != 0) {
+        const auto blocks = static_cast<std::uint32_t>(settings_.window_count / sizes_.windows);
+        expect(0, blocks);
+        run_blocks(blocks);
+        return;
+    }
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const bool budget = settings_.time_budget > 0;
+    for (std::uint32_t end = budget ? 2 : first_look; end <= most_blocks; end *= 2) {
+        const double before = seconds();
+        if (blocks_ == 0) expect(0, end);
+        run_blocks(end);
+        error_of_look_ /= 2;
+        const Worst now = worst_error(result(), baseline);
+        if (now.error <= settings_.target_error) return;
+        // The half width falls with the square root of the blocks: those looks are still to come.
+        for (std::uint32_t next = 2 * end; next <= most_blocks; next *= 2) {
+            expect(next / 2, next);
+            if (now.error * std::sqrt(end / static_cast<double>(next)) <= settings_.target_error) break;
+        }
+        const double last = seconds() - before;
+        if (budget && seconds() + 2 * last > settings_.time_budget) {
+            observer_.warn(
+                fmt::format("the time budget of {} s ends at {} blocks, ±{:.1f} % ({}); the target was ±{:.2g} %",
+                            settings_.time_budget, end, 100 * now.error, now.of, 100 * settings_.target_error));
+            return;
+        }
+        if (2 * end > most_blocks)
+            observer_.warn(fmt::format("no more than {} blocks are replayed: ±{:.1f} % ({}); the target was ±{:.2g} %",
+                                       most_blocks, 100 * now.error, now.of, 100 * settings_.target_error));
+    }
+}
+
+cachesim::Origin Estimator::origin(const Case& c, std::size_t gpu) const {
+    const traces::Provenance& p = c.capture->header().provenance;
+    cachesim::Origin origin{p.scene,
+                            c.name,
+                            p.sequence,
+                            p.parameters,
+                            p.thread_map,
+                            gpus_[gpu].name,
+                            p.spp,
+                            {gpus_[gpu].levels.size(), gpus_[gpu].l1().sector_bytes},
+                            {}};
+    cachesim::WindowSample& w = origin.windows.emplace();
+    w.blocks = blocks_;
+    w.indices = c.plan.launches() * c.plan.indices_per_launch();
+    w.windows = sizes_.windows;
+    w.timed_windows = ideals_.empty() ? 0 : sizes_.timed_windows;
+    if (blocks_ > 1 && error_of_look_ != all_error) w.widening = cachesim::widening(blocks_ - 1, error_of_look_);
+    for (const auto& block : c.blocks) {
+        w.unfilled_share += block[gpu].unfilled_share / blocks_;
+        w.last_cache_full &= block[gpu].unfilled_share < sizes_.unfilled_share;
+    }
+    return origin;
+}
+
+Predicted Estimator::result() const {
+    Predicted all;
+    for (const Case& c : cases_)
+        for (std::size_t g = 0; g < gpus_.size(); ++g) {
+            cachesim::Series& counted = all.traffic.emplace_back(cachesim::Series{origin(c, g), {}});
+            for (const auto& block : c.blocks) counted.launches.push_back(block[g].counts);
+            if (ideals_.empty()) continue;
+            cachesim::TimedSeries& timed = all.times.emplace_back();
+            static_cast<cachesim::Origin&>(timed) = counted;
+            timed.no_time = cachesim::no_time_note(gpus_[g]);
+            for (const auto& block : c.blocks) timed.launches.push_back(block[g].times.front());
+        }
+    return all;
+}
+
+std::vector<Json> Estimator::subject() const {
+    std::vector<Json> all;
+    for (const Case& c : cases_) {
+        traces::Header header = c.capture->header();
+        std::set<std::uint32_t> indices;
+        for (std::uint32_t i = 0; i < blocks_ * c.plan.launches(); ++i) indices.insert(header.launches[i]);
+        header.launches.assign(indices.begin(), indices.end());
+        all.push_back(trace_json(header, ""));
+    }
+    return all;
+}
+
+}  // namespace raycache::tools

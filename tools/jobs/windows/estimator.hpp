@@ -1,0 +1,69 @@
+// Strategies of one scene, replayed block by block until the answer is certain enough.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/jobs/observer.hpp"
+#include "tools/jobs/replay_launches.hpp"
+#include "tools/jobs/subject.hpp"
+#include "tools/jobs/windows/estimate.hpp"
+#include "tools/jobs/windows/window_replay.hpp"
+#include "tracer/capture.hpp"
+#include "tracer/prepared_scene.hpp"
+
+namespace raycache::tools {
+
+struct WindowedStrategy {
+    tracer::CaptureSettings capture;
+    std::string thread_map;  ///< as the user named it, for tables; empty: the strategy's own
+};
+std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
+
+class Estimator {
+public:
+    /// One of the strategies, and what its windows said.
+    struct Case {
+        std::string name;
+        WindowPlan plan;
+        std::vector<std::uint32_t> first;  ///< sample index of each block
+        std::unique_ptr<tracer::Capture> capture;
+        std::unique_ptr<cachesim::ElementDepth> depth;  ///< if findings are wanted
+        std::vector<std::vector<BlockResult>> blocks;   ///< by block, then GPU; without findings
+        std::vector<cachesim::Findings> findings;       ///< by GPU, of all blocks together; none unless asked for
+    };
+
+    /// `ideals`: a replay in time each. `gpus` and the observer must outlive the estimator.
+    Estimator(const tracer::PreparedScene&, const std::vector<WindowedStrategy>&, const EstimateSettings&,
+              const std::vector<cachesim::Gpu>& gpus, std::vector<cachesim::Idealised> ideals, bool findings,
+              Observer&);
+
+    /// Replays blocks until the settings are satisfied, once. `baseline`: that of the settings, or another strategy.
+    void run(const std::string& baseline);
+
+    const std::vector<Case>& cases() const { return cases_; }
+    /// In the order of cases, then GPUs; times of the first of the ideals.
+    Predicted result() const;
+    /// What the windows of a case are of, on a GPU.
+    cachesim::Origin origin(const Case&, std::size_t gpu) const;
+    /// trace_json() of each case, with the sample indices that were drawn.
+    std::vector<Json> subject() const;
+
+private:
+    void warn_of_pictures() const;
+    void expect(std::uint32_t begin, std::uint32_t end);
+    void run_blocks(std::uint32_t end);
+
+    EstimateSettings settings_;
+    const std::vector<cachesim::Gpu>& gpus_;
+    std::vector<cachesim::Idealised> ideals_;
+    Observer& observer_;
+    WindowSizes sizes_;
+    std::vector<Case> cases_;
+    std::uint32_t blocks_ = 0;
+    double error_of_look_;  ///< that the intervals of this look may have
+};
+
+}  // namespace raycache::tools

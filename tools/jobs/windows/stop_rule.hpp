@@ -1,0 +1,20 @@
+// When an estimate is certain enough: which of its figures must be, and how certain each is.
+#pragma once
+
+#include <string>
+
+#include "tools/jobs/replay_launches.hpp"
+
+namespace raycache::tools {
+
+/// The largest half width of a 95 % interval over its mean, and whose it is.
+struct Worst {
+    double error = 0;  ///< infinite where a figure has no interval
+    std::string of;
+};
+
+/// Of ratios to the baseline where there is one, else of means: predicted times if there are any, else bytes per ray of
+/// every level. `baseline`: as EstimateSettings has it.
+Worst worst_error(const Predicted&, const std::string& baseline);
+
+}  // namespace raycache::tools
