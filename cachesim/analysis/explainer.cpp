@@ -67,12 +67,12 @@ void Explainer::served(std::size_t level, std::span<const ServedRequest> request
 void Explainer::explain(std::size_t level, const ServedRequest& request) {
     const std::size_t cache = level == 0 ? request.sm * l1_per_sm_ + request.cache : request.sm;
     const std::uint8_t region = log_[request.access].region;
+    // What a full cache has not held since the replay began was asked for longer ago than it keeps anything.
+    const bool touched_before = history_ == History::endless && shadows_[level][cache].is_full();
     const auto shadow =
         shadows_[level][cache].look_up(ids_.id(request.address / line_bytes_, region), request.asked, request.missing);
     if (level == 0) find_owners(request, cache, shadow.number);
     if (!request.counted) return;
-    // What a full cache has not held since the replay began was asked for longer ago than it keeps anything.
-    const bool touched_before = history_ == History::endless && shadows_[level][cache].is_full();
     const Verdict verdict = judge(request, shadow, touched_before ? 0 : request.missing & shadow.never_held);
 
     LevelFindings& found = findings_.levels[level];

@@ -3,6 +3,7 @@
 #include "cachesim/analysis/explainer.hpp"
 
 #include <catch2/catch.hpp>
+#include <numeric>
 
 #include "cachesim/cache/registry.hpp"
 #include "cachesim/replay/replay.hpp"
@@ -202,6 +203,21 @@ TEST_CASE("misses are charged to the depth of the object that was read") {
     CHECK(l1.by_depth[0] == MissCounts{2, 2, 0, 0, 0});
     CHECK(l1.by_depth[1] == MissCounts{4, 4, 0, 0, 0});
     CHECK(l1.by_kind(traces::ObjectKind{2}) == MissCounts{1, 1, 0, 0, 0});
+}
+
+TEST_CASE("after work without end, a first touch in a full cache is a capacity miss and no compulsory one") {
+    const Gpu gpu = one_sm(4, 4);
+    const ElementDepth depth(lines);
+    std::vector<std::uint32_t> all(40);
+    std::iota(all.begin(), all.end(), 0U);
+    Replay replay(gpu, lines, 0);
+    Explainer explainer(gpu, lines, depth, nullptr, History::endless);
+    replay.observe(explainer);
+    replay.push(walk(0, all));
+    replay.finish();
+    const Findings& found = explainer.findings();
+    CHECK(found.levels[0].all() == MissCounts{40, 16, 24, 0, 0});
+    CHECK(found.levels[1].all() == MissCounts{40, 40, 0, 0, 0});
 }
 
 TEST_CASE("costs go in equal parts to the pixels of the lanes that asked for a sector") {

@@ -170,6 +170,36 @@ class Explain(ProgramTest):
     def test_a_warp_of_one_pixel_has_a_heat_map_too(self):
         self.succeeds(*FUSED, "--thread-map", "samples", "--heatmap", "s.exr")
 
+    def test_a_scene_is_explained_from_windows_with_intervals_the_same_for_any_threads(self):
+        windows = ["explain", "--scene", *SCENE, "--resolution", "64x48", "--windows", "4", "--spp", "16", "--gpu",
+                   "gtx-980-ti", "--set", "sms=1", "--warps-per-sm", "8"]
+        report = self.succeeds(*windows, "--json", "--threads", "1")
+        self.assertEqual(self.succeeds(*windows, "--json", "--threads", "3").stdout, report.stdout)
+        found = report.json
+        self.assertEqual(found["windows"]["blocks"], 2)
+        self.assertEqual(found["windows"]["windows_per_block"], 2)
+        for factor in found["factors"].values():
+            self.assertIsNotNone(factor["factor"]["half_width_95"])
+        self.assertIsNotNone(found["timed"][0]["speed_up"]["half_width_95"])
+        text = self.succeeds(*windows, "--counts-only").text
+        self.assertIn("steady state, from 2 blocks of", text)
+        self.assertIn("confidence interval over blocks of sample indices", " ".join(text.split()))
+        self.assertIn("note: estimates of the steady state", text)
+        self.assertNotIn("nan", text)
+        rows = self.succeeds("compare", *windows[1:], "--strategy", "cranley-patterson,micro-jitter", "--json").json["rows"]
+        for row, side in zip(rows, ("base", "other"), strict=True):
+            self.assertEqual(row["windows"]["blocks"], 2)
+            for key, value in found[side]["totals"].items():
+                self.assertEqual(row["totals"][key], value, key)
+
+    def test_a_heat_map_of_a_scene_is_of_whole_launches_and_says_so(self):
+        scene = ["explain", "--scene", *SCENE, "--resolution", "32x24", "--spp", "4", *GPU, "--counts-only"]
+        done = self.run_program(*scene, "--heatmap", "x.exr")
+        self.assertEqual(done.code, 0)
+        self.assertIn("warning: a heat map shows whole launches", done.stderr)
+        self.assertEqual(done.stdout, self.succeeds(*scene, "--exact").stdout)
+        self.refuses(2, *scene, "--heatmap", "x.exr", "--windows", "4", mentions=["--heatmap", "--windows"])
+
     def test_predicted_times_are_those_of_a_timed_comparison(self):
         base, other = self.traces()
         rows = self.succeeds("compare", base, other, *GPU, "--timed", "--json").json["rows"]
