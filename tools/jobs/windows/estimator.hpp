@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace raycache::tools {
 
 struct WindowedStrategy {
     tracer::CaptureSettings capture;
-    std::string thread_map;  ///< as the user named it, for tables; empty: the strategy's own
+    std::optional<std::string> thread_map;  ///< as the user named it, for tables
 };
 std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
 
