@@ -30,6 +30,7 @@ TEST_CASE("An explanation from windows has intervals, and findings that add up t
     REQUIRE(e.windows);
     CHECK(e.windows->blocks == 2);
     CHECK(e.windows->windows == 2);
+    CHECK_FALSE(e.windows->last_cache_full);  // so few warps do not fill it
     CHECK(e.base.name == "cranley-patterson");
     CHECK(e.other.name == "coherent");
     for (const cachesim::ExplainedTrace* trace : {&e.base, &e.other}) {
@@ -57,7 +58,8 @@ TEST_CASE("An explanation from windows has intervals, and findings that add up t
     }
     CHECK(e.speed_ups[1].base.cycles < e.speed_ups[0].base.cycles);  // a perfect L1
     CHECK(result.subject.traces.size() == 2);
-    CHECK_THAT(to_text(e), Contains("steady state, from 2 blocks of") && Contains("counts as capacity"));
+    CHECK_THAT(to_text(e), Contains("steady state, from 2 blocks of") && Contains("counts as capacity") &&
+                               Contains("the last cache does not fill up"));
 }
 
 TEST_CASE("An explanation from windows has the counts of an estimate of the same windows") {

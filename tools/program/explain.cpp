@@ -122,7 +122,7 @@ void add_explain(Program& program) {
         ->type_name("FILE.exr")
         ->excludes({"--windows", "--target-error", "--time-budget"});
     o->threads.add(*command);
-    o->estimate.add(*command, "--counts-only: of bytes; else of the speed-up");
+    o->estimate.add(*command, "of the predicted speed-up, with --counts-only of bytes");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);
     o->sampling.add_picture(*command);

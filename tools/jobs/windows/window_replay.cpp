@@ -141,7 +141,8 @@ private:
         const cachesim::LineFills now = counted_.replay().last_level_fills();
         const std::uint64_t misses = now.line_misses - before_.line_misses;
         const std::uint64_t empty = now.of_empty_ways - before_.of_empty_ways;
-        unfilled_share_ = misses == 0 ? 0 : static_cast<double>(empty) / static_cast<double>(misses);
+        if (misses == 0) return;  // that says nothing: all of a small scene may be there, in a cache mostly empty
+        unfilled_share_ = static_cast<double>(empty) / static_cast<double>(misses);
         before_ = now;
     }
 
