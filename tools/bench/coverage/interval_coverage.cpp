@@ -85,7 +85,7 @@ std::vector<Figure> figures(const std::vector<Results>& by_strategy, const cache
         static_cast<cachesim::Origin&>(times.emplace_back()) = counted.back();
         for (const BlockResult& block : by_strategy[s]) {
             counted.back().launches.push_back(block.counts);
-            times.back().launches.push_back(block.times);
+            for (const cachesim::TimedStatistics& time : block.times) times.back().launches.push_back(time);
         }
     }
     std::vector<Figure> all;
@@ -120,7 +120,7 @@ std::vector<Results> exact(const Captures& captures, const cachesim::Gpu& gpu, b
             if (task < captures.size())
                 all[s][0].counts = steady_state<cachesim::Replay>(*captures[s], gpu);
             else
-                all[s][0].times = steady_state<cachesim::TimedReplay>(*captures[s], gpu);
+                all[s][0].times = {steady_state<cachesim::TimedReplay>(*captures[s], gpu)};
             stage.add(1, 1);
         },
         tbb::simple_partitioner());
@@ -134,6 +134,8 @@ std::vector<std::vector<Results>> make_pool(const CoverageSettings& s, const Cap
     std::vector<std::vector<Results>> all(captures.size(), std::vector<Results>(plan.blocks(), Results(s.pool)));
     const std::size_t tasks = captures.size() * plan.blocks() * s.pool;
     const tools::Stage stage(observer, "blocks", tasks);
+    tools::WindowReplays replays;
+    if (s.timed) replays.timed.emplace_back();
     tbb::parallel_for(
         std::size_t{0}, tasks,
         [&](std::size_t task) {
@@ -141,7 +143,7 @@ std::vector<std::vector<Results>> make_pool(const CoverageSettings& s, const Cap
             const tools::BlockPlan places = plan.block(number, static_cast<std::uint32_t>(block) * plan.launches());
             all[task % captures.size()][block][number % s.pool] =
                 std::move(tools::replay_block(*captures[task % captures.size()], places.first, plan, places, s.sizes,
-                                              {gpu}, s.timed)
+                                              {gpu}, replays)
                               .front());
             stage.add(1, 1);
         },
