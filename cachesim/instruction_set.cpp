@@ -15,22 +15,22 @@ namespace raycache::cachesim {
 
 namespace {
 
-struct Entry {
+struct Compiled {
     InstructionSet instructions;
     const char* name;
     std::int64_t target;  ///< Highway's
 };
 
 /// Highway's target AVX3 is AVX-512 F, BW, DQ and VL. Every processor with these has CD, which is made sure of.
-constexpr Entry entries[] = {
+constexpr Compiled entries[] = {
     {InstructionSet::scalar, "scalar", 0},        {InstructionSet::neon, "neon", HWY_NEON},
     {InstructionSet::sse4, "sse4", HWY_SSE4},     {InstructionSet::avx2, "avx2", HWY_AVX2},
     {InstructionSet::avx512, "avx512", HWY_AVX3},
 };
 
-const Entry& entry_of(InstructionSet instructions) { return entries[static_cast<std::size_t>(instructions)]; }
+const Compiled& entry_of(InstructionSet instructions) { return entries[static_cast<std::size_t>(instructions)]; }
 
-bool is_available(const Entry& entry) {
+bool is_available(const Compiled& entry) {
     if (entry.target == 0) return true;
 #if HWY_ARCH_X86
     if (entry.instructions == InstructionSet::avx512 && !__builtin_cpu_supports("avx512cd")) return false;
@@ -61,7 +61,7 @@ std::int64_t highway_target(InstructionSet instructions) { return entry_of(instr
 
 std::vector<InstructionSet> instruction_sets() {
     std::vector<InstructionSet> sets;
-    for (const Entry& entry : entries)
+    for (const Compiled& entry : entries)
         if (is_available(entry)) sets.push_back(entry.instructions);
     return sets;
 }

@@ -28,15 +28,15 @@ void SymbolSearch::write_starts(Schedule& schedule, std::uint32_t mask, const Su
     }
 }
 
-/// `fixed_degree` is the degree of the record's region, known to the compiler; or `runtime`.
-constexpr unsigned runtime = ~0u;
+/// `fixed_degree` is the degree of the record's region, known to the compiler; or `any_degree`.
+constexpr unsigned any_degree = ~0u;
 
 template <unsigned fixed_degree>
 void SymbolSearch::write_access(const Header& header, Schedule& schedule, const Record& record,
                                 const std::uint32_t* elements, const Successor* to, const NextIn& next_in,
                                 BlockStreams& streams) {
     const Region& region = header.regions[record.region];
-    const unsigned degree = fixed_degree == runtime ? region.degree : fixed_degree;
+    const unsigned degree = fixed_degree == any_degree ? region.degree : fixed_degree;
     const std::uint32_t* table = region.links.data();
     std::uint8_t*& end = degree != 0 ? streams.linked_end : streams.other_end;
     std::uint8_t* out = end;
@@ -101,7 +101,7 @@ void SymbolSearch::write(const Header& header, Schedule& schedule, const WarpTra
                     write_access<8>(header, schedule, record, elements, to, *next_in, out);
                     break;
                 default:
-                    write_access<runtime>(header, schedule, record, elements, to, *next_in, out);
+                    write_access<any_degree>(header, schedule, record, elements, to, *next_in, out);
                     break;
             }
             elements += count;

@@ -8,7 +8,7 @@ namespace raycache::cachesim {
 namespace {
 
 /// The sectors of a look-up, by what became of them.
-struct Verdict {
+struct MissVerdict {
     std::uint32_t asked, compulsory, capacity, conflict, lucky;
 
     void add_to(MissCounts& counts, std::uint32_t sectors = ~std::uint32_t{0}) const {
@@ -22,7 +22,7 @@ struct Verdict {
 };
 
 /// `first`: those of the missing sectors that no cache can have held.
-Verdict judge(const ServedRequest& request, const ShadowCache::Answer& shadow, std::uint32_t first) {
+MissVerdict judge(const ServedRequest& request, const ShadowCache::Answer& shadow, std::uint32_t first) {
     const std::uint32_t missing = request.missing, again = missing & ~first;
     return {request.asked, first, again & shadow.absent, again & ~shadow.absent,
             request.asked & ~missing & shadow.absent};
@@ -73,7 +73,7 @@ void Explainer::explain(std::size_t level, const ServedRequest& request) {
         shadows_[level][cache].look_up(ids_.id(request.address / line_bytes_, region), request.asked, request.missing);
     if (level == 0) find_owners(request, cache, shadow.number);
     if (!request.counted) return;
-    const Verdict verdict = judge(request, shadow, touched_before ? 0 : request.missing & shadow.never_held);
+    const MissVerdict verdict = judge(request, shadow, touched_before ? 0 : request.missing & shadow.never_held);
 
     LevelFindings& found = findings_.levels[level];
     verdict.add_to(found.of_group(LevelFindings::place(request.ray, request.bounce), request.kind));

@@ -12,7 +12,7 @@ namespace raycache::cachesim {
 
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;  // of a cache
+constexpr std::uint64_t most_cache_bytes = std::uint64_t{1} << 40;  // of a cache
 constexpr std::uint64_t most_lines = std::uint64_t{1} << 26;
 
 std::optional<GpuProblem> not_in(const std::string& key, std::uint64_t value, std::uint64_t low, std::uint64_t high) {
@@ -129,7 +129,7 @@ std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::st
                           fmt::format("expected at most 32 sectors per line, found {} ({} bytes / {} bytes); make "
                                       "sectors larger or lines smaller",
                                       cache.line_bytes / cache.sector_bytes, cache.line_bytes, cache.sector_bytes)};
-    if (cache.sets > most_bytes / cache.line_bytes / cache.ways / cache.slices)
+    if (cache.sets > most_cache_bytes / cache.line_bytes / cache.ways / cache.slices)
         return GpuProblem{level + ".sets",
                           fmt::format("expected slices x sets x ways x line of at most 2^40 bytes, found "
                                       "{} x {} x {} x {}; check the unit",

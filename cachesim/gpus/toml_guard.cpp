@@ -9,7 +9,7 @@
 namespace raycache::cachesim {
 namespace {
 
-constexpr int most_levels = 16;     ///< of lists and tables within each other
+constexpr int most_nested = 16;     ///< of lists and tables within each other
 constexpr int most_key_parts = 16;  ///< of a dotted key: each is a level too
 
 bool is_digit_or_letter(char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -139,7 +139,7 @@ private:
     void value() {
         if (next('"') || next('\'')) return string();
         if (next('[') || next('{')) {
-            if (++levels_ > most_levels) fail(fmt::format("at most {} levels", most_levels));
+            if (++levels_ > most_nested) fail(fmt::format("at most {} levels", most_nested));
             next('[') ? list() : table();
             --levels_;
             return;

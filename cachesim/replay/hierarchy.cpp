@@ -25,7 +25,7 @@ Hierarchy::Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions,
       work_(rules_),
       on_threads_([this] { return Workspace(rules_); }),
       misses_(rules_.rounds) {
-    Origin* const window = accesses_of(windows_[present_]);
+    AccessOrigin* const window = accesses_of(windows_[present_]);
     for (std::uint32_t sm = 0; sm < gpu.sms; ++sm) sms_.emplace_back(rules_, sm, window, numbers_, observers_);
 }
 
@@ -35,7 +35,7 @@ void Hierarchy::observe(RequestSink& sink) {
     observers_.add(sink);
 }
 
-Origin* Hierarchy::accesses_of(Window& window) {
+AccessOrigin* Hierarchy::accesses_of(Window& window) {
     if (window.accesses.empty()) window.accesses.resize(rules_.rounds * rules_.gpu.sms);
     return window.accesses.data();
 }
@@ -79,7 +79,7 @@ void Hierarchy::look_up_deferred() {
     Window& ended = windows_[present_];
     present_ ^= 1;
     ended.missing.resize(sms_.size());
-    Origin* const next = accesses_of(windows_[present_]);
+    AccessOrigin* const next = accesses_of(windows_[present_]);
     for (std::size_t sm = 0; sm < sms_.size(); ++sm) sms_[sm].end_window(ended.missing[sm], next);
     shared_waits_ = true;
 }
@@ -94,7 +94,7 @@ void Hierarchy::look_up_shared() {
 
 template <class MissingOf>
 void Hierarchy::ask_shared(const Window& window, const MissingOf& missing_of) {
-    const Origin* const accesses = window.accesses.data();
+    const AccessOrigin* const accesses = window.accesses.data();
     Lookups& missing =
         misses_.sort(sms_.size(), missing_of, [accesses](std::uint32_t access) { return accesses[access].round; });
     work_.tally.make_room(numbers_.size());

@@ -80,11 +80,11 @@ public:
 private:
     /// What SMs issue in a window, and what their caches lack of it.
     struct Window {
-        std::vector<Origin> accesses;  ///< rounds() of SM 0, rounds() of SM 1, …
+        std::vector<AccessOrigin> accesses;  ///< rounds() of SM 0, rounds() of SM 1, …
         std::vector<Lookups> missing;  ///< by SM, once the window has ended; only where the shared level comes later
     };
 
-    Origin* accesses_of(Window&);
+    AccessOrigin* accesses_of(Window&);
     void look_up_deferred();
     void look_up_shared();
     template <class MissingOf>

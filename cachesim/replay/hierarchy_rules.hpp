@@ -41,7 +41,7 @@ struct HierarchyRules {
 };
 
 /// Where a warp access of a window comes from. The window has HierarchyRules::rounds of them for each SM.
-struct Origin {
+struct AccessOrigin {
     std::uint32_t group;  ///< GroupNumbers
     std::uint16_t round;
     std::uint8_t region, l1;

@@ -16,7 +16,7 @@ void OwnedLevel::clear() {
     if (number_ == rules_.shared) level_->count_fills();
 }
 
-const std::uint32_t* OwnedLevel::sets(const Lookups& lookups, const Origin* window, Workspace& work) const {
+const std::uint32_t* OwnedLevel::sets(const Lookups& lookups, const AccessOrigin* window, Workspace& work) const {
     const auto region_of = [window](std::uint32_t access) { return window[access].region; };
     const SetFinder& find = rules_.find_sets[number_];
     if (number_ == 0 && rules_.gpu.l1_per_sm > 1)
@@ -25,7 +25,7 @@ const std::uint32_t* OwnedLevel::sets(const Lookups& lookups, const Origin* wind
     return find(lookups, region_of, work.sets);
 }
 
-void OwnedLevel::look_up(Lookups& lookups, const Origin* window, Workspace& work) {
+void OwnedLevel::look_up(Lookups& lookups, const AccessOrigin* window, Workspace& work) {
     const bool observed = observers_.any() && observers_.want(number_, sm_), widens = rules_.fills[number_].widens();
     if (observed || widens)
         work.asked.assign(lookups.sectors.begin(),
@@ -40,16 +40,16 @@ void OwnedLevel::look_up(Lookups& lookups, const Origin* window, Workspace& work
         work.tally.add_fetched(number_, window[lookups.accesses[i]].group, lookups.sectors[i]);
 }
 
-void OwnedLevel::answer(Lookups& lookups, const Origin* window, Workspace& work) {
+void OwnedLevel::answer(Lookups& lookups, const AccessOrigin* window, Workspace& work) {
     work.asked.assign(lookups.sectors.begin(), lookups.sectors.begin() + static_cast<std::ptrdiff_t>(lookups.count));
     level_->process(sets(lookups, window, work), lookups.lines.data(), lookups.sectors.data(), lookups.count);
 }
 
-void OwnedLevel::report(const Lookups& answers, const Origin* window, Workspace& work) const {
+void OwnedLevel::report(const Lookups& answers, const AccessOrigin* window, Workspace& work) const {
     work.served.clear();
     for (std::size_t i = 0; i < answers.count; ++i) {
         const std::uint32_t access = answers.accesses[i];
-        const Origin& origin = window[access];
+        const AccessOrigin& origin = window[access];
         const GroupNumbers::RayOf& of = groups_.ray_of(origin.group);
         work.served.push_back({rules_.ids.line(answers.lines[i], origin.region) * rules_.gpu.l1().line_bytes,
                                work.asked[i], answers.sectors[i] & work.asked[i], sm_, number_ == 0 ? origin.l1 : 0u,

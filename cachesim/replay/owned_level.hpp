@@ -19,10 +19,10 @@ public:
 
     /// All look-ups in order; leaves those for which something is fetched, and what that is. `window`: origins of their
     /// accesses. Workspace::tally must have room for their groups.
-    void look_up(Lookups&, const Origin* window, Workspace&);
+    void look_up(Lookups&, const AccessOrigin* window, Workspace&);
 
     /// Leaves in the look-ups what is fetched, and in Workspace::asked what was asked for; charges nothing.
-    void answer(Lookups&, const Origin* window, Workspace&);
+    void answer(Lookups&, const AccessOrigin* window, Workspace&);
 
     /// Forgets all lines.
     void clear();
@@ -31,8 +31,8 @@ public:
     LineFills fills() const { return level_->fills(); }
 
 private:
-    const std::uint32_t* sets(const Lookups&, const Origin* window, Workspace&) const;
-    void report(const Lookups&, const Origin* window, Workspace&) const;
+    const std::uint32_t* sets(const Lookups&, const AccessOrigin* window, Workspace&) const;
+    void report(const Lookups&, const AccessOrigin* window, Workspace&) const;
 
     const HierarchyRules& rules_;
     std::size_t number_;  ///< of the level

@@ -9,7 +9,7 @@ SharedLevel::SharedLevel(const HierarchyRules& rules, const GroupNumbers& groups
     if (rules.writes) write_back_.emplace();
 }
 
-void SharedLevel::look_up(Lookups& lookups, const Origin* window, Workspace& work) {
+void SharedLevel::look_up(Lookups& lookups, const AccessOrigin* window, Workspace& work) {
     if (write_back_) {
         look_up_written(lookups, window, work);
         return;
@@ -22,11 +22,11 @@ void SharedLevel::look_up(Lookups& lookups, const Origin* window, Workspace& wor
 
 /// A launch that writes: a written sector is there afterwards without being read from DRAM, and is written to DRAM once
 /// for each time that it was changed and then evicted (or was left at the end).
-void SharedLevel::look_up_written(Lookups& lookups, const Origin* window, Workspace& work) {
+void SharedLevel::look_up_written(Lookups& lookups, const AccessOrigin* window, Workspace& work) {
     level_.answer(lookups, window, work);
     for (std::size_t i = 0; i < lookups.count; ++i) {
         const std::uint32_t line = lookups.lines[i], fetched = lookups.sectors[i], asked = work.asked[i];
-        const Origin& origin = window[lookups.accesses[i]];
+        const AccessOrigin& origin = window[lookups.accesses[i]];
         if (traces::is_write(rules_.kinds[origin.region])) {
             work.tally.add_fetched(rules_.shared, origin.group, write_back_->write(line, asked, fetched));
             first_touches_.add(line, asked | fetched);  // there without being read

@@ -17,12 +17,12 @@ public:
 
     /// What the SMs lack, in order of issue. `window`: origins of the accesses. Workspace::tally must have room
     /// for their groups.
-    void look_up(Lookups&, const Origin* window, Workspace&);
+    void look_up(Lookups&, const AccessOrigin* window, Workspace&);
 
     LineFills fills() const { return level_.fills(); }
 
 private:
-    void look_up_written(Lookups&, const Origin* window, Workspace&);
+    void look_up_written(Lookups&, const AccessOrigin* window, Workspace&);
 
     const HierarchyRules& rules_;
     OwnedLevel level_;

@@ -7,7 +7,7 @@
 
 namespace raycache::cachesim {
 
-SmCaches::SmCaches(const HierarchyRules& rules, std::uint32_t sm, Origin* window, const GroupNumbers& groups,
+SmCaches::SmCaches(const HierarchyRules& rules, std::uint32_t sm, AccessOrigin* window, const GroupNumbers& groups,
                    const Observers& observers)
     : rules_(rules),
       window_(window),
@@ -80,7 +80,7 @@ void SmCaches::set_writes_apart(Workspace& work) {
     std::size_t reads = 0;
     for (std::size_t i = 0; i < lookups.count; ++i) {
         const std::uint32_t line = lookups.lines[i], sectors = lookups.sectors[i], access = lookups.accesses[i];
-        const Origin& origin = window_[access];
+        const AccessOrigin& origin = window_[access];
         if (traces::is_write(rules_.kinds[origin.region])) {
             written.add(line, sectors, access);
             work.tally.add_passing(rules_.shared - 1, origin.group, static_cast<unsigned>(std::popcount(sectors)));
@@ -110,7 +110,7 @@ void SmCaches::end_window() {
     missing_.count = 0;
 }
 
-void SmCaches::end_window(Lookups& missing, Origin* next_window) {
+void SmCaches::end_window(Lookups& missing, AccessOrigin* next_window) {
     std::swap(missing_, missing);
     window_ = next_window;
     end_window();

@@ -21,7 +21,7 @@ class SmCaches {
 public:
     /// Empty. `window`: where the accesses of all SMs come from; this one writes those from sm * rounds on. All
     /// references must outlive this object.
-    SmCaches(const HierarchyRules&, std::uint32_t sm, Origin* window, const GroupNumbers&, const Observers&);
+    SmCaches(const HierarchyRules&, std::uint32_t sm, AccessOrigin* window, const GroupNumbers&, const Observers&);
 
     /// The warp access that the SM issues through one of its L1s in this round of the window; `elements`: one index per
     /// active lane, valid until end_run(); `warp`: whose number; `groups`: of its batch. Accesses come in order of
@@ -50,7 +50,7 @@ public:
     void end_window();
     /// Likewise: what was missing goes to `missing`, whose room this object takes over, and the accesses of the next
     /// window are written elsewhere.
-    void end_window(Lookups& missing, Origin* next_window);
+    void end_window(Lookups& missing, AccessOrigin* next_window);
 
     /// Accesses that end_run() has not looked up yet.
     std::uint32_t waiting() const { return issued_ - begun_; }
@@ -66,7 +66,7 @@ private:
     void lack(const Lookups&);
 
     const HierarchyRules& rules_;
-    Origin* window_;
+    AccessOrigin* window_;
     const GroupNumbers& groups_;
     const Observers& observers_;
     std::uint32_t first_;                   ///< number of its first access in the window

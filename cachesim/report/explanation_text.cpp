@@ -18,7 +18,7 @@ namespace {
 
 using Align = TextTable::Align;
 
-std::string figure(double value) { return cachesim::figure(value, 4); }
+std::string four_digits(double value) { return cachesim::figure(value, 4); }
 double quotient(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 std::string percent(std::uint64_t part, std::uint64_t whole) { return decimals(100 * quotient(part, whole), 1); }
 
@@ -33,8 +33,8 @@ class Pair {
 public:
     explicit Pair(const Explanation& e) : base_rays_(e.base.totals().rays), other_rays_(e.other.totals().rays) {}
 
-    std::string base(std::uint64_t count) const { return figure(quotient(count, base_rays_)); }
-    std::string other(std::uint64_t count) const { return figure(quotient(count, other_rays_)); }
+    std::string base(std::uint64_t count) const { return four_digits(quotient(count, base_rays_)); }
+    std::string other(std::uint64_t count) const { return four_digits(quotient(count, other_rays_)); }
     std::string ratio(std::uint64_t base_count, std::uint64_t other_count) const {
         return decimals(quotient(other_count, other_rays_) / quotient(base_count, base_rays_), 3);
     }
@@ -53,18 +53,19 @@ std::string identity_table(const Explanation& e, std::size_t width) {
     const CacheUnits caches = e.caches();
     const auto factors = e.factors();
     for (std::size_t i = 0; const IdentityTerm& term : identity_terms(caches.levels)) {
-        table.row({term.name, term.quantity, figure(term.value(base, caches)), figure(term.value(other, caches)),
+        table.row({term.name, term.quantity, four_digits(term.value(base, caches)),
+                   four_digits(term.value(other, caches)),
                    with_interval(factors ? std::optional(factors->terms[i]) : std::nullopt, 3)});
         ++i;
     }
     const auto product = [&](TrafficKey mean, TrafficKey key, const char* name) {
         const TrafficFigure& f = traffic_figures[mean.index];
-        table.row({"product", name, figure(f.value(base, caches)), figure(f.value(other, caches)),
+        table.row({"product", name, four_digits(f.value(base, caches)), four_digits(f.value(other, caches)),
                    with_interval(ratio(e, key), 3)});
     };
     if (factors) {
         const TrafficFigure& f = traffic_figures[TrafficKey("cache_locality").index];
-        table.row({f.title, "all miss rates", figure(f.value(base, caches)), figure(f.value(other, caches)),
+        table.row({f.title, "all miss rates", four_digits(f.value(base, caches)), four_digits(f.value(other, caches)),
                    with_interval(factors->cache_locality(), 3)});
     }
     product("l2_bytes_per_ray", "l2_bytes_ratio", "L2-to-L1 bytes/ray");
@@ -114,7 +115,7 @@ std::string group_table(const Explanation& e, std::size_t width) {
         const auto& by_launch = match == others.end() ? none : match->by_launch;
         const Estimate ratio = e.ratio_of("dram_bytes_ratio", group.by_launch, by_launch);
         const auto factors = e.factors_of(group.by_launch, by_launch);
-        std::vector<std::string> cells{group.name, figure(before), figure(after), decimals(ratio.mean, 3)};
+        std::vector<std::string> cells{group.name, four_digits(before), four_digits(after), decimals(ratio.mean, 3)};
         std::vector<std::string> widths{"", "", "", half_width_cell(ratio, 3)};
         for (std::size_t i = 0; const IdentityTerm& term : identity_terms(e.caches().levels)) {
             cells.push_back(decimals(term.value(other, e.caches()) / term.value(base, e.caches()), 3));

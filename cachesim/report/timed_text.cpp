@@ -18,13 +18,13 @@ namespace {
 
 using Align = TextTable::Align;
 
-std::string percent(double share) { return decimals(100 * share, 1); }
+std::string share_text(double share) { return decimals(100 * share, 1); }
 
 /// "DRAM (81.2 %)", "latency; busiest: L1 port (31.0 %)".
 std::string bottleneck(const TimedRow& row) {
     if (!row.has_time()) return "-";
     return fmt::format("{}{} ({} %)", row.waits_most() ? "latency; busiest: " : "", row.busiest,
-                       percent(row.busiest_share));
+                       share_text(row.busiest_share));
 }
 
 /// Tables whose first columns say which row of the report theirs is.

@@ -20,7 +20,7 @@ struct FourSms {
     explicit FourSms(bool threads) {
         std::deque<SmCaches> sms;
         std::deque<Workspace> work;
-        std::vector<Origin> window(rules.rounds * 4);
+        std::vector<AccessOrigin> window(rules.rounds * 4);
         BatchGroups& batch = numbers.begin_batch();
         for (std::uint32_t sm = 0; sm < 4; ++sm) {
             sms.emplace_back(rules, sm, window.data(), numbers, nobody);
@@ -89,7 +89,7 @@ TEST_CASE("what an SM lacks it lacks again in the next window only if it was evi
     HierarchyRules rules(small_gpu(), {region(ObjectKind::node, 0x200000, 128, 128, 100)}, best_instruction_set());
     GroupNumbers numbers(1);
     Observers nobody;
-    std::vector<Origin> window(2 * rules.rounds);
+    std::vector<AccessOrigin> window(2 * rules.rounds);
     Workspace work(rules);
     SmCaches sm(rules, 1, window.data(), numbers, nobody);
     BatchGroups& batch = numbers.begin_batch();

@@ -21,6 +21,13 @@ def output_of(command, folder=BUILD):
     return subprocess.run(command, cwd=folder, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
+def sources_of(file):
+    """The sources that a file of CMake's makes into one (CMAKE_UNITY_BUILD), or the file itself."""
+    if "/Unity/" not in file:
+        return [file]
+    return re.findall(r'^#include "(.+)"$', pathlib.Path(file).read_text(encoding="utf-8"), re.MULTILINE)
+
+
 class Copy:
     """The sources in a folder of their own, and the program that they make."""
 
@@ -29,7 +36,7 @@ class Copy:
         self.root = pathlib.Path(self._temporary.name) / "raycache"
         for folder in FOLDERS:
             shutil.copytree(support.ROOT / folder, self.root / folder)
-        self._new, self._changed, self.lines_added = [], [], 0
+        self._new, self._changed, self.lines_added, self._groups = [], [], 0, 0
 
     def close(self):
         self._temporary.cleanup()
@@ -59,6 +66,18 @@ class Copy:
         self._changed.append(name)
         self.lines_added += 1
 
+    def in_copy(self, source):
+        """What is compiled here instead of it."""
+        if "/Unity/" not in source:
+            return source.replace(str(support.ROOT), str(self.root))
+        self._groups += 1
+        group = self.root / f"group{self._groups}.cpp"
+        text = pathlib.Path(source).read_text(encoding="utf-8")
+        for folder in FOLDERS:  # but for what the build made
+            text = text.replace(f'"{support.ROOT}/{folder}/', f'"{self.root}/{folder}/')
+        group.write_text(text, encoding="utf-8")
+        return str(group)
+
     def build(self):
         """Compiles what includes a changed file, and new sources; links it with the rest; returns the program."""
         commands = {entry["file"]: entry["command"] for entry in json.loads((BUILD / "compile_commands.json").read_text())}
@@ -77,14 +96,15 @@ class Copy:
         assert objects, "no object depends on what was changed"
         for name in self._new:
             if name.endswith(".cpp"):
-                sibling = next(file for file in commands if pathlib.Path(file).parent == (support.ROOT / name).parent)
+                folder = (support.ROOT / name).parent
+                sibling = next(file for file in commands if folder in {pathlib.Path(one).parent for one in sources_of(file)})
                 objects[name] = self.root / f"object{len(objects)}.o"
                 jobs.append((commands[sibling], sibling, objects[name], self.root / name))
         running = []
         for command, source, target, *other in jobs:
             words = shlex.split(command)
             words[words.index("-o") + 1] = str(target)
-            words[words.index("-c") + 1] = str(other[0]) if other else source.replace(str(support.ROOT), str(self.root))
+            words[words.index("-c") + 1] = str(other[0]) if other else self.in_copy(source)
             instead = {f"-I{support.ROOT}": f"-I{self.root}", "-O3": "-O0", "-O1": "-O0"}  # to compile fast
             words = [instead.get(word, word) for word in words]
             running.append(subprocess.Popen(words, cwd=BUILD))

@@ -12,29 +12,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json optional(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json optional(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
 /// `below`: the reference's noise hides the figure; it is less than that.
 Json measured(const tracer::Measured& m) {
-    return {{"value", number(m.value)}, {"half_width_95", number(m.half_width)}, {"below", optional(m.below)}};
+    return {
+        {"value", json_number(m.value)}, {"half_width_95", json_number(m.half_width)}, {"below", optional(m.below)}};
 }
 
 Json errors_json(const tracer::ErrorMeasures& e, std::uint32_t width) {
-    Json json{
-        {"rmse", measured(e.rmse)},
-        {"relative_rmse", measured(e.relative_rmse)},
-        {"robust_rmse", measured(e.robust_rmse)},
-        {"r8", measured(e.r8)},
-        {"block_rmse", measured(e.block_rmse)},
-        {"mean_error", {{"value", number(e.mean_error.value)}, {"half_width_95", number(e.mean_error.half_width)}}},
-        {"z_pixels", number(e.z_pixels)},
-        {"z_seeds", e.z_seeds ? number(*e.z_seeds) : Json(nullptr)}};
+    Json json{{"rmse", measured(e.rmse)},
+              {"relative_rmse", measured(e.relative_rmse)},
+              {"robust_rmse", measured(e.robust_rmse)},
+              {"r8", measured(e.r8)},
+              {"block_rmse", measured(e.block_rmse)},
+              {"mean_error",
+               {{"value", json_number(e.mean_error.value)}, {"half_width_95", json_number(e.mean_error.half_width)}}},
+              {"z_pixels", json_number(e.z_pixels)},
+              {"z_seeds", e.z_seeds ? json_number(*e.z_seeds) : Json(nullptr)}};
     const auto worst = tracer::worst_block(e);
     json["worst_block"] =
-        worst ? Json{{"x", worst->x}, {"y", worst->y}, {"mean_error", number(worst->mean_error)}} : Json(nullptr);
+        worst ? Json{{"x", worst->x}, {"y", worst->y}, {"mean_error", json_number(worst->mean_error)}} : Json(nullptr);
     const auto& few = e.few_pixels;
     json["half_of_squared_error"] = few ? Json{{"pixels", few->count},
-                                               {"share", number(few->share)},
+                                               {"share", json_number(few->share)},
                                                {"x", few->largest % width},
                                                {"y", few->largest / width}}
                                         : Json(nullptr);
@@ -45,11 +46,11 @@ Json errors_json(const tracer::ErrorMeasures& e, std::uint32_t width) {
 Json ratio_json(const std::optional<tracer::RmseRatio>& ratio) {
     const tracer::RmseRatio none{{std::nan(""), std::nan("")}, {std::nan(""), std::nan("")}, {}, false};
     const tracer::RmseRatio& r = ratio ? *ratio : none;
-    return {{"rmse_ratio", number(r.value.value)},
-            {"rmse_ratio_half_width_95", number(r.value.half_width)},
+    return {{"rmse_ratio", json_number(r.value.value)},
+            {"rmse_ratio_half_width_95", json_number(r.value.half_width)},
             {"rmse_ratio_below", optional(r.value.below)},
             {"rmse_ratio_above", optional(r.value.above)},
-            {"robust_rmse_ratio", number(r.robust.value)},
+            {"robust_rmse_ratio", json_number(r.robust.value)},
             {"decided_by_pixels", r.decided_by_pixels ? Json(*r.decided_by_pixels) : Json(nullptr)},
             {"rmse_ratio_words", ratio ? Json(tracer::ratio_text(r)) : Json(nullptr)}};
 }
@@ -69,13 +70,13 @@ Json row_json(const QualityRow& row, const std::vector<QualityRow>& all) {
     if (!row.pairs.empty()) {
         for (const PairEffect& p : row.pairs)
             json["dimension_pairs"].push_back(
-                {{"dimensions", {2 * p.pair, 2 * p.pair + 1}}, {"share_of_structured_error", number(p.share)}});
+                {{"dimensions", {2 * p.pair, 2 * p.pair + 1}}, {"share_of_structured_error", json_number(p.share)}});
     }
     if (row.timing) {
-        json["predicted_seconds"] = number(row.timing->seconds);
+        json["predicted_seconds"] = json_number(row.timing->seconds);
         const auto& up = row.timing->speed_up;
-        json["speed_up"] = up ? Json{{"mean", number(up->mean)},
-                                     {"half_width_95", up->half_width ? number(*up->half_width) : Json(nullptr)}}
+        json["speed_up"] = up ? Json{{"mean", json_number(up->mean)},
+                                     {"half_width_95", up->half_width ? json_number(*up->half_width) : Json(nullptr)}}
                               : Json(nullptr);
     }
     if (row.equal_time) {
@@ -118,11 +119,11 @@ std::string to_json(const QualityReport& report, const Recommendation* recommend
               {"baseline", report.baseline},
               {"gpu", report.gpu.empty() ? Json(nullptr) : Json(report.gpu)},
               {"repeats", report.repeats},
-              {"clamp", report.clamp ? number(*report.clamp) : Json(nullptr)},
+              {"clamp", report.clamp ? json_number(*report.clamp) : Json(nullptr)},
               {"reference",
                {{"spp", report.reference_spp},
-                {"rmse", number(report.rows.front().errors.reference_rmse)},
-                {"mean_luminance", number(report.rows.front().errors.reference_luminance)},
+                {"rmse", json_number(report.rows.front().errors.reference_rmse)},
+                {"mean_luminance", json_number(report.rows.front().errors.reference_luminance)},
                 {"file", report.reference_path.empty() ? Json(nullptr) : Json(report.reference_path)}}}};
     if (recommendation) json.update(recommendation_json(*recommendation));
     for (const QualityRow& row : report.rows) json["rows"].push_back(row_json(row, report.rows));

@@ -17,7 +17,7 @@ namespace {
 
 using tracer::Drawing, tracer::Image;
 
-constexpr int margin = 16, panel = 288, line = label_line;
+constexpr int gap = 16, panel_side = 288, line = label_line;
 constexpr std::uint32_t usual_crop = 96;
 
 /// Luminance of picture minus reference.
@@ -68,11 +68,11 @@ struct Part {
         std::vector<decltype(at(0U, 0U))> shown;
         for (std::uint32_t row = 0; row < rows; ++row)
             for (std::uint32_t column = 0; column < columns; ++column)
-                shown.push_back(at(column * side / panel, row * side / panel));
+                shown.push_back(at(column * side / panel_side, row * side / panel_side));
         return shown;
     }
     /// Pixels of the panel that this length takes.
-    std::uint32_t fill(std::uint32_t length) const { return (length * panel + side - 1) / side; }
+    std::uint32_t fill(std::uint32_t length) const { return (length * panel_side + side - 1) / side; }
     void frame(Drawing& drawing, int x, int y) const {
         drawing.frame(x, y, static_cast<int>(columns), static_cast<int>(rows), {0, 0, 0});
     }
@@ -129,21 +129,20 @@ tracer::ScreenImage draw_index(const QualityReport& report, const QualityPicture
                                const Scale& pixels, const Scale& blocks, float exposure) {
     const Image& reference = pictures.reference;
     const bool equal_time = report.rows.front().equal_time.has_value();
-    const int columns = equal_time ? 5 : 3, row_height = line + panel + margin;
-    const int top = margin + 4 * line + 8;
+    const int columns = equal_time ? 5 : 3, row_height = line + panel_side + gap;
+    const int top = gap + 4 * line + 8;
     const int rows = static_cast<int>(report.rows.size()) + 1;
-    const auto owned =
-        tracer::make_drawing(margin + columns * (panel + margin), top + rows * row_height + line + margin);
+    const auto owned = tracer::make_drawing(gap + columns * (panel_side + gap), top + rows * row_height + line + gap);
     Drawing& drawing = *owned;
-    const auto column = [](int c) { return margin + c * (panel + margin); };
-    drawing.text(margin, margin,
+    const auto column = [](int c) { return gap + c * (panel_side + gap); };
+    drawing.text(gap, gap,
                  fmt::format("{}, {} x {} pixels, reference of {} samples per pixel", report.scene, report.width,
                              report.height, report.reference_spp),
                  label_size);
-    drawing.text(margin, margin + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", label_size);
-    drawing.text(margin, margin + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", label_size);
+    drawing.text(gap, gap + line, "R8: error shared by 8 x 8 pixels; 1: fine noise, 64: patches.", label_size);
+    drawing.text(gap, gap + 2 * line, "z: about 1 without bias, above 1.4 the mean is off.", label_size);
     if (equal_time)
-        drawing.text(margin, margin + 3 * line,
+        drawing.text(gap, gap + 3 * line,
                      fmt::format("Equal time: as many samples as {} predicts to fit into the time of {}.", report.gpu,
                                  report.baseline.empty() ? "each" : report.baseline),
                      label_size);
@@ -157,13 +156,13 @@ tracer::ScreenImage draw_index(const QualityReport& report, const QualityPicture
                      return tracer::tone_map(reference.pixels[std::size_t{y} * reference.width + x], exposure);
                  });
     const std::uint32_t whole = std::max(reference.width, reference.height);
-    const auto shown = [&](std::uint32_t length) { return static_cast<int>(length * panel / whole); };
+    const auto shown = [&](std::uint32_t length) { return static_cast<int>(length * panel_side / whole); };
     for (const int inset : {0, 1})
         drawing.frame(column(1) + shown(crop.x) + inset, top + line + shown(crop.y) + inset,
                       shown(crop.side) - 2 * inset, shown(crop.side) - 2 * inset, {230, 60, 0});
     drawing.text(column(2), top, "error, red: too bright", label_size);
-    draw_scale_bar(drawing, column(2), top + 2 * line, panel, pixels, "pixel, luminance");
-    draw_scale_bar(drawing, column(2), top + 6 * line, panel, blocks, "mean of 8 x 8");
+    draw_scale_bar(drawing, column(2), top + 2 * line, panel_side, pixels, "pixel, luminance");
+    draw_scale_bar(drawing, column(2), top + 6 * line, panel_side, blocks, "mean of 8 x 8");
 
     for (std::size_t r = 0; r < report.rows.size(); ++r) {
         const QualityRow& row = report.rows[r];

@@ -11,11 +11,11 @@ namespace {
 
 using tracer::Colour;
 
-constexpr int margin = 20, panel = 512;
+constexpr int border = 20, plot_side = 512;
 constexpr unsigned cross = 3;  ///< pixels from the middle of a base point's cross to its ends
 constexpr Colour black{0, 0, 0};
 
-unsigned place(std::uint32_t u) { return static_cast<unsigned>(std::uint64_t{u} * panel >> 32); }
+unsigned place(std::uint32_t u) { return static_cast<unsigned>(std::uint64_t{u} * plot_side >> 32); }
 
 /// A colour for each sample: neighbouring indices lie far apart in a low-discrepancy sequence; a stride through the
 /// colours keeps them apart too.
@@ -41,13 +41,14 @@ std::string caption(const SampleUnion& u) {
 
 /// All points of the unit square, y upwards.
 tracer::ScreenImage draw_points(const SampleUnion& u) {
-    tracer::ScreenImage image{panel, panel, std::vector<Colour>(std::size_t{panel} * panel, {255, 255, 255})};
+    tracer::ScreenImage image{plot_side, plot_side,
+                              std::vector<Colour>(std::size_t{plot_side} * plot_side, {255, 255, 255})};
     const auto dot = [&](const tracer::FixedPoint2& p, unsigned width, unsigned height, Colour colour) {
-        const unsigned x = place(p.x), y = panel - 1 - place(p.y);
+        const unsigned x = place(p.x), y = plot_side - 1 - place(p.y);
         const unsigned x0 = x - std::min(x, width / 2), y0 = y - std::min(y, height / 2);
-        for (unsigned row = y0; row < std::min<unsigned>(y0 + height, panel); ++row)
-            for (unsigned column = x0; column < std::min<unsigned>(x0 + width, panel); ++column)
-                image.pixels[std::size_t{row} * panel + column] = colour;
+        for (unsigned row = y0; row < std::min<unsigned>(y0 + height, plot_side); ++row)
+            for (unsigned column = x0; column < std::min<unsigned>(x0 + width, plot_side); ++column)
+                image.pixels[std::size_t{row} * plot_side + column] = colour;
     };
     const unsigned size = u.points.size() > 200'000 ? 1 : 2;
     const std::vector<Colour> colours = sample_colours(u.base.size());
@@ -64,17 +65,18 @@ tracer::ScreenImage draw_points(const SampleUnion& u) {
 tracer::ScreenImage draw_samples(const std::string& title, const std::vector<SamplesPanel>& panels) {
     const auto columns = static_cast<int>(std::min<std::size_t>(2, panels.size()));
     const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-    const int row_height = panel + 2 * label_line + margin, head = margin + 2 * label_line;
-    const int width = std::max(margin + columns * (panel + margin), 2 * margin + tracer::text_width(title, label_size));
+    const int row_height = plot_side + 2 * label_line + border, head = border + 2 * label_line;
+    const int width =
+        std::max(border + columns * (plot_side + border), 2 * border + tracer::text_width(title, label_size));
     const auto drawing = tracer::make_drawing(width, head + rows * row_height);
-    drawing->text(margin, margin, title, label_size);
+    drawing->text(border, border, title, label_size);
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-        const int x = margin + column * (panel + margin), y = head + row * row_height;
+        const int x = border + column * (plot_side + border), y = head + row * row_height;
         drawing->text(x, y, panels[i].title, label_size);
         drawing->paste(x, y + label_line, draw_points(*panels[i].samples));
-        drawing->frame(x - 1, y + label_line - 1, panel + 2, panel + 2, black);
-        drawing->text(x, y + label_line + panel + 4, caption(*panels[i].samples), label_size);
+        drawing->frame(x - 1, y + label_line - 1, plot_side + 2, plot_side + 2, black);
+        drawing->text(x, y + label_line + plot_side + 4, caption(*panels[i].samples), label_size);
     }
     return drawing->image();
 }

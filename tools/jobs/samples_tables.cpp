@@ -242,7 +242,7 @@ constexpr std::array<NamedTable, 8> tables{{{"holes", holes},
                                             {"boundary", boundary},
                                             {"jitter", jitter}}};
 
-std::string number(double value) {
+std::string number_text(double value) {
     if (std::isnan(value)) return "-";
     const double size = std::fabs(value);
     if (value == std::floor(value) && size < 1e7) return fmt::format("{:.0f}", value);
@@ -258,7 +258,7 @@ std::string SamplesTable::text() const {
         lines.emplace_back();
         for (const auto& cell : row) {
             const auto* words = std::get_if<std::string>(&cell);
-            lines.back().push_back(words ? *words : number(std::get<double>(cell)));
+            lines.back().push_back(words ? *words : number_text(std::get<double>(cell)));
         }
     }
     std::vector<std::size_t> widths(columns.size());

@@ -17,7 +17,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct CompareArguments {
     InputOptions inputs;
     SceneOptions scene;
     std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter"};
@@ -31,7 +31,7 @@ struct Options {
 };
 
 /// One for each sequence, N, strategy and K; a strategy without K once.
-std::vector<CaseSettings> cases_of(const Options& o) {
+std::vector<CaseSettings> cases_of(const CompareArguments& o) {
     std::vector<CaseSettings> all;
     std::set<std::string> seen;
     for (const std::string& sequence : o.sequences)
@@ -48,7 +48,7 @@ std::vector<CaseSettings> cases_of(const Options& o) {
     return all;
 }
 
-Action plan(const std::shared_ptr<Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) {
     const Inputs inputs = o->inputs.sorted(*command);
     o->scene.source = inputs.scene;
     ReplayJob job = o->report.job();
@@ -79,7 +79,7 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
 }  // namespace
 
 void add_compare(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<CompareArguments>();
     Command* command =
         program.add_subcommand("compare", "Compare strategies, straight from a scene or from trace files");
     o->inputs.add(*command, "trace files");

@@ -22,7 +22,7 @@ namespace raycache::tools {
 namespace {
 
 template <class List>
-std::vector<std::string> names_of(const List& list) {
+std::vector<std::string> listed_names(const List& list) {
     std::vector<std::string> names;
     for (const auto& item : list) names.push_back(item.name);
     return names;
@@ -38,8 +38,8 @@ std::vector<std::string> gpu_keys() {
 /// What options and positional arguments of these names take, in every command.
 const std::map<std::string, Candidates>& known() {
     static const std::map<std::string, Candidates> table = [] {
-        const std::vector<std::string> strategies = names_of(tracer::decorrelations()),
-                                       scenes = names_of(tracer::builtin_scenes());
+        const std::vector<std::string> strategies = listed_names(tracer::decorrelations()),
+                                       scenes = listed_names(tracer::builtin_scenes());
         const Candidates any_file{{}, {"*"}}, traces{{}, {"rct"}}, scene{scenes, {"glb", "gltf"}},
             trace_or_scene{scenes, {"rct", "glb", "gltf"}}, strategy{strategies, {}};
         return std::map<std::string, Candidates>{
@@ -47,9 +47,9 @@ const std::map<std::string, Candidates>& known() {
             {"--baseline", strategy},
             {"--swept", strategy},
             {"--reference-strategy", strategy},
-            {"--sequence", {names_of(tracer::sequences()), {}}},
-            {"--order", {names_of(tracer::ray_orders()), {}}},
-            {"--gpu", {names_of(cachesim::gpu_presets()), {"toml"}}},
+            {"--sequence", {listed_names(tracer::sequences()), {}}},
+            {"--order", {listed_names(tracer::ray_orders()), {}}},
+            {"--gpu", {listed_names(cachesim::gpu_presets()), {"toml"}}},
             {"--set", {gpu_keys(), {}}},
             {"--scene", scene},
             {"SCENE", scene},
@@ -60,7 +60,7 @@ const std::map<std::string, Candidates>& known() {
             {"--sky", {{"auto", "on", "off"}, {}}},
             {"--lights", {{"auto", "bsdf", "nee", "mis"}, {}}},
             {"--execution", {{"megakernel", "wavefront"}, {}}},
-            {"--thread-map", {names_of(tracer::thread_maps()), {}}},
+            {"--thread-map", {listed_names(tracer::thread_maps()), {}}},
             {"--by", {{"none", "bounce", "ray", "object"}, {}}},
             {"--format", {{"dinero", "u64", "csv", "accel-sim"}, {}}},
             {"--level", {{"l1", "l2", "l3"}, {}}},
@@ -80,11 +80,11 @@ const std::map<std::string, Candidates>& known() {
     return table;
 }
 
-struct Options {
+struct CompletionArguments {
     std::string shell;
 };
 
-void run(const Options& o, const Program& program) {
+void run(const CompletionArguments& o, const Program& program) {
     const std::vector<CommandView> commands = views_of_commands(program);
     if (o.shell == "bash") return print(bash_completion(commands));
     if (o.shell == "zsh") return print(zsh_completion(commands));
@@ -102,7 +102,7 @@ Candidates candidates_of(const OptionView& option) {
 }
 
 void add_completion(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<CompletionArguments>();
     Command* command = program.add_subcommand("completion", "Print a script that completes raycache's command lines");
     command->hide();
     command->add_option("SHELL", o->shell, "bash or zsh; or commands: every subcommand and what it does")

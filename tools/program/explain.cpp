@@ -19,7 +19,7 @@ namespace {
 
 constexpr tracer::StrategyParts parts{.order = false};
 
-struct Options {
+struct ExplainArguments {
     InputOptions inputs;
     SceneOptions scene;
     std::vector<std::string> strategies{"cranley-patterson", "micro-jitter"};
@@ -39,7 +39,7 @@ std::string samples_text(std::size_t count) {
     return count == 1 ? "1 sample index" : fmt::format("{} sample indices", count);
 }
 
-void publish(const Options& o, const ExplainResult& result) {
+void publish(const ExplainArguments& o, const ExplainResult& result) {
     const cachesim::Explanation& e = result.explanation;
     Deliveries deliveries;
     deliveries.attempt([&] {
@@ -53,7 +53,7 @@ void publish(const Options& o, const ExplainResult& result) {
     deliveries.finish(say_failure);
 }
 
-Action plan(const std::shared_ptr<Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) {
     const Inputs inputs = o->inputs.sorted(*command);
     o->scene.source = inputs.scene;
     if (!o->heat_map.empty()) check_heat_map_name(o->heat_map);
@@ -95,7 +95,7 @@ Action plan(const std::shared_ptr<Options>& o, const Command* command) {
 }  // namespace
 
 void add_explain(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ExplainArguments>();
     Command* command = program.add_subcommand(
         "explain",
         "Explain why one strategy causes more cache traffic than another, factor by factor and miss by miss");

@@ -18,7 +18,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct ExportArguments {
     std::string trace, format, level = "l1", output;
     GpuOptions gpu;
     std::optional<std::uint32_t> sm, l1, launch;
@@ -38,7 +38,7 @@ std::vector<std::string> format_names() {
     return names;
 }
 
-std::uint32_t choose_launch(const Options& o, const traces::Header& header) {
+std::uint32_t choose_launch(const ExportArguments& o, const traces::Header& header) {
     const std::size_t launches = header.launches.size();
     const std::uint32_t launch = o.launch.value_or(0);
     if (launch >= launches)
@@ -48,7 +48,7 @@ std::uint32_t choose_launch(const Options& o, const traces::Header& header) {
 }
 
 /// A file holds one launch. Says so where others were left out and none was asked for.
-void warn_of_others(const Options& o, const traces::Header& header) {
+void warn_of_others(const ExportArguments& o, const traces::Header& header) {
     const std::size_t launches = header.launches.size();
     if (o.launch || launches == 1) return;
     warn(fmt::format("{}: only launch 0 of {} is exported, sample index {}; choose with --launch 0 to {}", o.trace,
@@ -56,7 +56,7 @@ void warn_of_others(const Options& o, const traces::Header& header) {
 }
 
 /// Which cache, or UsageError.
-cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gpu& gpu,
+cachesim::SectorStream::Choice choose_cache(const ExportArguments& o, const cachesim::Gpu& gpu,
                                             const cachesim::SectorFormat& format) {
     const std::size_t levels = gpu.levels.size();
     std::size_t level = 0;
@@ -85,7 +85,7 @@ cachesim::SectorStream::Choice choose_cache(const Options& o, const cachesim::Gp
     return {level, *o.sm, o.l1};
 }
 
-void export_sectors(const Options& o, const cachesim::Gpu& gpu, const cachesim::SectorFormat& format,
+void export_sectors(const ExportArguments& o, const cachesim::Gpu& gpu, const cachesim::SectorFormat& format,
                     const cachesim::SectorStream::Choice& choice) {
     const traces::Reader reader(o.trace);
     const traces::Header& header = reader.header();
@@ -110,7 +110,7 @@ void export_sectors(const Options& o, const cachesim::Gpu& gpu, const cachesim::
     warn_of_others(o, header);
 }
 
-void export_instructions(const Options& o) {
+void export_instructions(const ExportArguments& o) {
     const traces::Reader reader(o.trace);
     refuse_wavefront(reader.header(), o.trace, "export");
     Progress progress("export");
@@ -118,7 +118,7 @@ void export_instructions(const Options& o) {
     warn_of_others(o, reader.header());
 }
 
-Action plan(const std::shared_ptr<const Options>& o) {
+Action plan(const std::shared_ptr<const ExportArguments>& o) {
     if (o->format == "accel-sim") {
         if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->level != "l1")
             throw UsageError(
@@ -139,7 +139,7 @@ Action plan(const std::shared_ptr<const Options>& o) {
 }  // namespace
 
 void add_export(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ExportArguments>();
     Command* command =
         program.add_subcommand("export", "Write a trace, or what a cache is asked during its replay, for other tools");
     command->add_option("TRACE", o->trace, "trace file")->required();

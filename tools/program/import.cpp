@@ -14,12 +14,12 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct ImportArguments {
     std::string input, output;
     bool fuse = false;
 };
 
-void run(const Options& o) {
+void run(const ImportArguments& o) {
     refuse_overwriting({o.input}, {o.output});
     check_outputs({o.output}, warn);
     Progress progress("import");
@@ -49,7 +49,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_import(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ImportArguments>();
     Command* command = program.add_subcommand(
         "import", "Make a trace of an Accel-Sim (NVBit) trace's global loads, or of an RTWARP01 trace");
     command->add_option("FILE", o->input, "a kernel's .traceg, plain or xz; or an RTWARP01 trace, plain or zstd")

@@ -15,7 +15,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct InfoArguments {
     std::string path;
     JsonOption json;
 };
@@ -91,7 +91,7 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
     return out;
 }
 
-void run(const Options& o) {
+void run(const InfoArguments& o) {
     const traces::Reader reader(o.path);
     Totals totals;
     for (const traces::BlockInfo& block : reader.blocks()) {
@@ -106,7 +106,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_info(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<InfoArguments>();
     Command* command = program.add_subcommand("info", "Show a trace's provenance, counts and bytes per ray");
     command->add_option("TRACE", o->path, "trace file")->required();
     o->json.add(*command);

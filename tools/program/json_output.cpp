@@ -51,7 +51,7 @@ Json value_of(const OptionView& option, const std::string& key) {
 }
 
 /// As a shell reads it back.
-std::string shell_quoted(const std::string& word) {
+std::string quoted_word(const std::string& word) {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
     if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
     std::string out = "'";
@@ -72,12 +72,12 @@ std::string command_line(const CommandView& command) {
         if (option.is_flag) {
             options += ' ' + option.names.front();
         } else if (option.names.empty()) {
-            for (const std::string& word : option.words) names += ' ' + shell_quoted(word);
+            for (const std::string& word : option.words) names += ' ' + quoted_word(word);
         } else if (option.has_commas) {
-            options += ' ' + option.names.front() + ' ' + shell_quoted(fmt::format("{}", fmt::join(option.words, ",")));
+            options += ' ' + option.names.front() + ' ' + quoted_word(fmt::format("{}", fmt::join(option.words, ",")));
         } else {
             for (const std::string& word : option.words)
-                options += ' ' + option.names.front() + ' ' + shell_quoted(word);
+                options += ' ' + option.names.front() + ' ' + quoted_word(word);
         }
     });
     return "raycache " + command.name + names + options;

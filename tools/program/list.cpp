@@ -74,14 +74,14 @@ std::vector<Topic> all_topics() {
 /// Entries of a topic that `raycache list` shows without being asked for it; of more it says how many there are.
 constexpr std::size_t most_of_all_topics = 30;
 
-struct Options {
+struct ListArguments {
     std::string topic;
     JsonOption json;
     WidthOption width;
     bool details = false, keys = false;
 };
 
-void run(const Options& o) {
+void run(const ListArguments& o) {
     if (o.keys) {
         if (o.topic != "gpus" || o.details)
             throw UsageError(fmt::format("--keys with {}; expected 'raycache list gpus --keys'",
@@ -121,7 +121,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_list(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ListArguments>();
     Command* command = program.add_subcommand("list",
                                               "List strategies, sequences, GPUs, layouts, integrators, thread maps, "
                                               "ray orders, built-in scenes, figures of reports");

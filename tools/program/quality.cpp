@@ -13,7 +13,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct QualityArguments {
     QualityOptions common;
     std::vector<std::string> strategies{"coherent", "cranley-patterson", "micro-jitter", "random"};
     std::vector<std::string> sequences{"sobol"};
@@ -22,7 +22,7 @@ struct Options {
     std::string output, crop;
 };
 
-Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const QualityArguments>& o, const Command* command) {
     QualityJob job = o->common.job();
     for (const std::string& sequence : o->sequences)
         for (const std::uint64_t spp : o->spp)
@@ -61,7 +61,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
 }  // namespace
 
 void add_quality(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<QualityArguments>();
     Command* command = program.add_subcommand(
         "quality", "Measure the error of strategies' pictures: its size, how much of it neighbours share, and bias");
     add_strategies(*command, o->strategies, {false, false});

@@ -8,7 +8,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct RenderArguments {
     SceneOptions scene;
     SamplingOptions sampling;
     ThreadOptions threads;
@@ -17,7 +17,7 @@ struct Options {
     std::optional<float> exposure, clamp;
 };
 
-Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const RenderArguments>& o, const Command* command) {
     const RenderJob job{o->scene,    o->sampling, {{o->strategy}, o->sequence, o->spp, {}, {}},
                         o->exposure, o->clamp,    o->output};
     const tracer::CaptureSettings settings = job.capture();
@@ -32,7 +32,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
 }  // namespace
 
 void add_render(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<RenderArguments>();
     Command* command = program.add_subcommand("render", "Render a picture of a scene (PNG, JPEG, EXR, HDR)");
     o->scene.add_name(*command);
     command->add_option("-o,--output", o->output, "picture to write: .png .jpg (tone mapped), .exr .hdr (linear)")

@@ -9,13 +9,13 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct ReplayArguments {
     std::string path;
     ReportOptions report;
     ThreadOptions threads;
 };
 
-Action plan(const std::shared_ptr<const Options>& o) {
+Action plan(const std::shared_ptr<const ReplayArguments>& o) {
     ReplayJob job = o->report.job();
     job.launches.traces = {o->path};
     const auto gpus = o->report.load_gpus({o->path});
@@ -31,7 +31,7 @@ Action plan(const std::shared_ptr<const Options>& o) {
 }  // namespace
 
 void add_replay(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ReplayArguments>();
     Command* command = program.add_subcommand("replay", "Replay a trace through a GPU's caches");
     command->add_option("TRACE", o->path, "trace file")->required();
     o->threads.add(*command);

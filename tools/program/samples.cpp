@@ -19,7 +19,7 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct SamplesArguments {
     std::string sequence = "halton", strategy = "micro-jitter";
     std::uint64_t spp = 128, copies = 150;
     std::vector<std::uint32_t> dimensions{0, 1};
@@ -29,7 +29,7 @@ struct Options {
     ThreadOptions threads;
 };
 
-SamplesJob job_of(const Options& o) {
+SamplesJob job_of(const SamplesArguments& o) {
     return {o.sampling, {{o.strategy}, o.sequence, o.spp, {}, {}}, {o.dimensions[0], o.dimensions[1]}, o.copies};
 }
 
@@ -50,14 +50,14 @@ void check_picture_name(const char* option, const std::string& path) {
         throw UsageError(fmt::format("{} '{}'; expected a file name that ends in .png", option, path));
 }
 
-std::string subject(const Options& o) {
+std::string subject(const SamplesArguments& o) {
     return fmt::format("{} dimensions {},{}, N {}, {} copies", o.sequence, o.dimensions[0], o.dimensions[1], o.spp,
                        o.copies);
 }
 
 /// For an N that the star discrepancy is known of. K below the hole-free one by half leaves holes; the paper's own K
 /// comes from the star discrepancy.
-void write_figure2(const Options& o) {
+void write_figure2(const SamplesArguments& o) {
     const SamplesJob job = job_of(o);
     const SampleUnion coherent = make(job, "coherent", {});
     const double from_discrepancy = coherent.k_from_discrepancy().value(), small = coherent.hole_free_k / 2;
@@ -70,7 +70,7 @@ void write_figure2(const Options& o) {
                                              {"cranley-patterson", &rotated}}));
 }
 
-void run(const Options& o, const Command& command) {
+void run(const SamplesArguments& o, const Command& command) {
     check_outputs({o.csv, o.picture, o.figure2}, warn);
     if (!o.picture.empty() || !o.figure2.empty()) tracer::check_drawing();
     const auto limit = o.threads.apply();
@@ -92,7 +92,7 @@ void run(const Options& o, const Command& command) {
     deliveries.finish(say_failure);
 }
 
-void run_table(const Options& o, const Command& command) {
+void run_table(const SamplesArguments& o, const Command& command) {
     const std::vector<std::string> read{"--table", "--json", "--threads"};
     for (const std::string& line : idle_besides(command, read, "a table has settings of its own")) warn(line);
     const auto limit = o.threads.apply();
@@ -102,7 +102,7 @@ void run_table(const Options& o, const Command& command) {
     print(o.json ? o.json.document(table.json()) : table.text());
 }
 
-Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const SamplesArguments>& o, const Command* command) {
     if (!o->table.empty()) return [o, command] { run_table(*o, *command); };
     refuse_stdout("--csv", o->csv);
     check_picture_name("--picture", o->picture);
@@ -116,7 +116,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
 }  // namespace
 
 void add_samples(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SamplesArguments>();
     Command* command = program.add_subcommand(
         "samples", "Show the points of all pixels in two dimensions of a strategy: holes, density, picture");
     command->add_option("--sequence", o->sequence, "low-discrepancy sequence (see 'raycache list sequences')")

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* baseline = "cranley-patterson";
 
-struct Options {
+struct SweepArguments {
     QualityOptions common;
     std::vector<double> mus{0, 1. / 64, 1. / 32, 1. / 16, 0.09, 0.125, 0.18, 0.25, 0.35, 0.5, 0.71, 1};
     std::string swept = "micro-jitter", sequence = "sobol";
@@ -46,7 +46,7 @@ const QualityRow& row_of(double mu, const QualityReport& report) {
 }
 
 /// Whether that row is certainly faster than the baseline, or what would tell.
-std::string gain_text(const Options& o, const QualityRow& row) {
+std::string gain_text(const SweepArguments& o, const QualityRow& row) {
     const auto& up = row.timing->speed_up;
     if (!up || (up->half_width && up->mean - *up->half_width > 1)) return {};
     if (up->half_width && up->mean + *up->half_width < 1) return fmt::format("; slower than {}", baseline);
@@ -60,7 +60,7 @@ std::string gain_text(const Options& o, const QualityRow& row) {
     return text;
 }
 
-std::string advice_text(const Options& o, const QualityReport& report, const tracer::SweepAdvice& advice) {
+std::string advice_text(const SweepArguments& o, const QualityReport& report, const tracer::SweepAdvice& advice) {
     const std::string bounds =
         fmt::format("R8 at most {} and an RMSE of at most {} x {}'s", o.max_r8, o.max_rmse, baseline);
     std::string text;
@@ -86,7 +86,7 @@ std::string advice_text(const Options& o, const QualityReport& report, const tra
     return text;
 }
 
-Recommendation recommend(const Options& o, const QualityReport& report) {
+Recommendation recommend(const SweepArguments& o, const QualityReport& report) {
     const tracer::SweepLimits limits{o.max_r8, o.max_rmse};
     std::vector<tracer::SweepPoint> points;
     for (const QualityRow& row : report.rows)
@@ -96,7 +96,7 @@ Recommendation recommend(const Options& o, const QualityReport& report) {
     return {advice_text(o, report, advice), advice, limits};
 }
 
-Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
+Action plan(const std::shared_ptr<const SweepArguments>& o, const Command* command) {
     if (!tracer::find_decorrelation(o->swept).has_parameter("mu"))
         throw UsageError(
             fmt::format("--swept {}; expected a strategy that has a mu: micro-jitter, scrambling-distance", o->swept));
@@ -134,7 +134,7 @@ Action plan(const std::shared_ptr<const Options>& o, const Command* command) {
 }  // namespace
 
 void add_sweep(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SweepArguments>();
     Command* command = program.add_subcommand(
         "sweep",
         "Which scrambling distance to set: predicted speed and picture quality against mu, with a recommendation");

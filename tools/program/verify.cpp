@@ -18,12 +18,12 @@
 namespace raycache::tools {
 namespace {
 
-struct Options {
+struct VerifyArguments {
     std::string path, recovered;
     JsonOption json;
 };
 
-void run(const Options& o) {
+void run(const VerifyArguments& o) {
     refuse_overwriting({o.path}, {o.recovered});
     refuse_stdout("--recover", o.recovered);
     check_outputs({o.recovered}, warn);
@@ -58,7 +58,7 @@ void run(const Options& o) {
 }  // namespace
 
 void add_verify(Program& program) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<VerifyArguments>();
     Command* command = program.add_subcommand("verify", "Check every checksum and record of a trace");
     command->add_option("TRACE", o->path, "trace file")->required();
     command->add_option("--recover", o->recovered, "write the launches that are whole to this new trace")

@@ -11,18 +11,19 @@
 namespace raycache::tracer {
 
 namespace {
-constexpr std::array names{std::pair{"auto", LightSampling::automatic}, std::pair{"bsdf", LightSampling::bsdf},
-                           std::pair{"nee", LightSampling::nee}, std::pair{"mis", LightSampling::mis}};
+constexpr std::array light_sampling_names{std::pair{"auto", LightSampling::automatic},
+                                          std::pair{"bsdf", LightSampling::bsdf}, std::pair{"nee", LightSampling::nee},
+                                          std::pair{"mis", LightSampling::mis}};
 }  // namespace
 
 LightSampling light_sampling_from(const std::string& name) {
-    for (const auto& [known, value] : names)
+    for (const auto& [known, value] : light_sampling_names)
         if (name == known) return value;
     throw UsageError(fmt::format("--lights '{}'; expected one of: auto, bsdf, nee, mis", name));
 }
 
 std::string to_string(LightSampling lights) {
-    for (const auto& [known, value] : names)
+    for (const auto& [known, value] : light_sampling_names)
         if (lights == value) return known;
     return {};
 }

@@ -10,8 +10,6 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
 struct Variance {
     double value = 0, degrees = 0;  ///< degrees of freedom; 0: no variance can be told
 };

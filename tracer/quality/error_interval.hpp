@@ -16,12 +16,15 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 
 #include "tracer/quality/error_sums.hpp"
 
 namespace raycache::tracer {
+
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// A figure, value ± half_width with 95 % confidence. NaN: not known. Where the reference's noise hides it, `value` is
 /// NaN and only a bound is known.

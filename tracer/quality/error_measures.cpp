@@ -9,9 +9,7 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double normal_975 = 1.959963984540054;
-constexpr double block_size = error_block * error_block;
 
 using Totals = std::span<const ErrorTotals>;
 

@@ -7,10 +7,9 @@ namespace raycache::tracer {
 namespace {
 
 using Color = std::array<double, 3>;
-constexpr double block_size = error_block * error_block;
 
 Color minus(Vec3 a, Vec3 b) { return {double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z}; }
-double square(const Color& c) { return (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) / 3; }
+double squared(const Color& c) { return (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) / 3; }
 double luminance(const Color& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
 std::size_t tile_of(std::uint32_t x, std::uint32_t y, const Image& image) {
@@ -50,18 +49,18 @@ ErrorTiles sum_up(const Image& size, const Error& error, const std::vector<doubl
         const Color e = error(p);
         ErrorTotals& t = tiles[tile_of(x, y, size)];
         t[ErrorSum::pixels] += 1;
-        t[ErrorSum::square] += square(e);
-        t[ErrorSum::relative_square] += square(e) * weight[p];
+        t[ErrorSum::square] += squared(e);
+        t[ErrorSum::relative_square] += squared(e) * weight[p];
         t[ErrorSum::luminance] += luminance(e);
         t[ErrorSum::luminance_square] += luminance(e) * luminance(e);
     });
     for_blocks(size, error, [&](std::uint32_t left, std::uint32_t top, const Color& mean) {
         ErrorTotals& t = tiles[tile_of(left, top, size)];
         t[ErrorSum::block_pixels] += block_size;
-        t[ErrorSum::block_mean_square] += block_size * square(mean);
+        t[ErrorSum::block_mean_square] += block_size * squared(mean);
         for (std::uint32_t y = top; y < top + error_block; ++y)
             for (std::uint32_t x = left; x < left + error_block; ++x)
-                t[ErrorSum::in_blocks_square] += square(error(std::size_t{y} * size.width + x));
+                t[ErrorSum::in_blocks_square] += squared(error(std::size_t{y} * size.width + x));
     });
     return tiles;
 }
@@ -75,7 +74,7 @@ public:
         mean_.resize(std::size_t{columns_} * rows);
         std::vector<double> count(mean_.size());
         for_pixels(half_difference, [&](std::uint32_t x, std::uint32_t y, std::size_t p) {
-            mean_[cell(x, y)] += square(minus(half_difference.pixels[p], {}));
+            mean_[cell(x, y)] += squared(minus(half_difference.pixels[p], {}));
             count[cell(x, y)] += 1;
         });
         for (std::size_t c = 0; c < mean_.size(); ++c) mean_[c] /= count[c];
@@ -132,15 +131,15 @@ ErrorSums sum_errors(std::span<const Image> seeds, const Reference& reference) {
         for (std::size_t p = 0; p < pixels; ++p) {
             const Color e = error(p);
             for (std::size_t c = 0; c < 3; ++c) mean[p][c] += e[c] / count;
-            mean_square[p] += square(e) / count;
+            mean_square[p] += squared(e) / count;
         }
     }
     for (std::size_t p = 0; p < pixels; ++p)
-        sums.pixel_square.push_back(static_cast<float>(mean_square[p] - square(own(p))));
+        sums.pixel_square.push_back(static_cast<float>(mean_square[p] - squared(own(p))));
 
     const ReferenceVariance variance(reference.half_difference);
     for_pixels(truth, [&](std::uint32_t x, std::uint32_t y, std::size_t p) {
-        const double v = 4 * variance.at(x, y) * square(mean[p]);
+        const double v = 4 * variance.at(x, y) * squared(mean[p]);
         sums.noise[ErrorSum::square] += v;
         sums.noise[ErrorSum::relative_square] += v * weight[p] * weight[p];
         const bool in_block =
@@ -156,7 +155,7 @@ ErrorSums sum_errors(std::span<const Image> seeds, const Reference& reference) {
             sums.blocks.mean.push_back(static_cast<float>(luminance(e)));
             // The reference's pixels are independent: its block mean has a 64th of the variance.
             sums.noise[ErrorSum::block_mean_square] +=
-                block_size * block_size * 4 * (variance.at(left, top) / block_size) * square(e);
+                block_size * block_size * 4 * (variance.at(left, top) / block_size) * squared(e);
         });
     return sums;
 }

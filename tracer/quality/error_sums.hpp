@@ -11,7 +11,8 @@
 
 namespace raycache::tracer {
 
-inline constexpr std::uint32_t error_block = 8;  ///< pixels on a side of a block
+inline constexpr std::uint32_t error_block = 8;                  ///< pixels on a side of a block
+inline constexpr double block_size = error_block * error_block;  ///< pixels of a block
 
 /// What is summed over pixels, or over the whole 8 x 8 blocks that begin in a tile. Squares are means over the channels
 /// of linear RGB, and less what the reference's own error contributes (Reference): their expectation is the strategy's

@@ -25,14 +25,14 @@ std::string checksum(const std::vector<Channel>& channels) {
     return fmt::format("{:016x}", sum);
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& expected, const std::string& found) {
+[[noreturn]] void refuse_file(const std::string& path, const std::string& expected, const std::string& found) {
     throw Error(fmt::format("{}: expected {}, found {}; remove it or name another file", path, expected, found));
 }
 
 const Channel& find_channel(const std::string& path, const ChannelFile& file, const char* name) {
     for (const Channel& channel : file.channels)
         if (channel.name == name) return channel;
-    refuse(path, fmt::format("a channel {}", name), "none");
+    refuse_file(path, fmt::format("a channel {}", name), "none");
 }
 
 /// Radiance is finite and not negative, in the mean as in either half, mean ± half difference.
@@ -45,9 +45,9 @@ void check_values(const std::string& path, const std::vector<Channel>& channels,
                 return fmt::format("{} in channel {} at pixel {}, {}", name == names[c] ? mean : half, name, p % width,
                                    p / width);
             };
-            if (!std::isfinite(mean) || mean < 0) refuse(path, "finite values of 0 or more", at(names[c]));
+            if (!std::isfinite(mean) || mean < 0) refuse_file(path, "finite values of 0 or more", at(names[c]));
             if (!(std::abs(half) <= mean * (1 + rounding) + std::numeric_limits<float>::min()))
-                refuse(path, fmt::format("half differences of at most the mean, here {}", mean), at(names[c + 3]));
+                refuse_file(path, fmt::format("half differences of at most the mean, here {}", mean), at(names[c + 3]));
         }
     }
 }
@@ -68,20 +68,21 @@ void write_reference(const std::string& path, const Reference& reference) {
 Reference read_reference(const std::string& path, const std::string& key, ImageSize size) {
     const auto check_header = [&](const ChannelFile& header) {
         const std::string& found_key = header.attributes[0].second;
-        if (found_key.empty()) refuse(path, "a reference that raycache wrote", "an image without its mark");
-        if (found_key != key) refuse(path, fmt::format("the reference \"{}\"", key), fmt::format("\"{}\"", found_key));
+        if (found_key.empty()) refuse_file(path, "a reference that raycache wrote", "an image without its mark");
+        if (found_key != key)
+            refuse_file(path, fmt::format("the reference \"{}\"", key), fmt::format("\"{}\"", found_key));
         if (header.width != size.width || header.height != size.height)
-            refuse(path, fmt::format("{} x {} pixels", size.width, size.height),
-                   fmt::format("{} x {}", header.width, header.height));
+            refuse_file(path, fmt::format("{} x {} pixels", size.width, size.height),
+                        fmt::format("{} x {}", header.width, header.height));
         if (header.channels.size() != names.size())
-            refuse(path, fmt::format("{} channels", names.size()), fmt::format("{}", header.channels.size()));
+            refuse_file(path, fmt::format("{} channels", names.size()), fmt::format("{}", header.channels.size()));
         for (const char* name : names) find_channel(path, header, name);
     };
     const ChannelFile file = read_channels(path, {key_attribute, checksum_attribute}, check_header);
     std::vector<Channel> channels;
     for (const char* name : names) channels.push_back(find_channel(path, file, name));
     if (checksum(channels) != file.attributes[1].second)
-        refuse(path, fmt::format("pixels with checksum {}", file.attributes[1].second), checksum(channels));
+        refuse_file(path, fmt::format("pixels with checksum {}", file.attributes[1].second), checksum(channels));
     check_values(path, channels, file.width);
 
     Reference reference{{file.width, file.height, {}}, {file.width, file.height, {}}, key};

@@ -44,7 +44,6 @@ double sum_of(const std::vector<float>& values) { return std::accumulate(values.
 }  // namespace
 
 Measured median_of_means(const ErrorSums& sums) {
-    constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
     Measured m{not_a_number, not_a_number, {}, {}, 0};
     const std::size_t pixels = sums.pixel_square.size();
     if (pixels < robust_groups) return m;

@@ -96,25 +96,25 @@ std::size_t find_camera(const Scene& scene, const std::string& wanted) {
         wanted, scene.name, fmt::join(names, ", "), scene.cameras.size() - 1, did_you_mean(wanted, names))));
 }
 
-std::string text(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string numbers_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
 void aim(Camera& camera, Vec3 eye, Vec3 look_at) {
     if (!is_finite(eye) || !is_finite(look_at))
         throw UsageError(
             fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
                         "give three numbers for each",
-                        text(eye), text(look_at)));
+                        numbers_of(eye), numbers_of(look_at)));
     for (const auto& [point, option] : {std::pair{eye, "--eye"}, std::pair{look_at, "--look-at"}})
         if (!is_usable_position(point))
             throw UsageError(
                 fmt::format("{} {}: expected a point within {:g} m of the origin on each axis, found one "
                             "beyond; move it closer",
-                            option, text(point), max_coordinate));
+                            option, numbers_of(point), max_coordinate));
     const double x = double{look_at.x} - eye.x, y = double{look_at.y} - eye.y, z = double{look_at.z} - eye.z;
     const double distance = std::hypot(x, y, z);
     if (!(distance > 0))
-        throw UsageError(
-            fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one", text(eye)));
+        throw UsageError(fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one",
+                                     numbers_of(eye)));
     camera.name = "eye";
     camera.problem.clear();
     camera.eye = eye;

@@ -10,9 +10,9 @@
 namespace raycache::tracer {
 namespace {
 
-constexpr std::uint32_t square = 16, tile_width = 8, tile_height = 4;
-constexpr std::uint32_t tiles_across = square / tile_width;
-constexpr std::uint32_t pixels_per_square = square * square;
+constexpr std::uint32_t square_side = 16, tile_columns = 8, tile_rows = 4;
+constexpr std::uint32_t tiles_in_row = square_side / tile_columns;
+constexpr std::uint32_t pixels_per_square = square_side * square_side;
 constexpr std::uint32_t tiles_per_square = pixels_per_square / traces::warp_lanes;
 
 }  // namespace
@@ -52,7 +52,7 @@ LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height,
             "thread map classes with {0}x{0} classes of pixels for a picture of {1}x{2}; expected 1 to {3}, "
             "the shorter side (--interleave)",
             interleave_, width, height, std::min(width, height)));
-    const std::uint32_t span = square * interleave_;
+    const std::uint32_t span = square_side * interleave_;
     squares_across_ = (width + span - 1) / span;
     const std::uint32_t squares = squares_across_ * ((height + span - 1) / span);
     warps_per_class_ = squares * (map == ThreadMap::samples ? pixels_per_square : tiles_per_square);
@@ -88,8 +88,8 @@ WarpJobs LaunchGrid::jobs(std::uint32_t warp, std::uint32_t first_sample) const 
         const std::uint32_t in_square = p % pixels_per_square, in_tile = in_square % traces::warp_lanes;
         const std::uint32_t tile = in_square / traces::warp_lanes, corner = p / pixels_per_square;
         LaneJob& job = out.lane[lane];
-        job.x = corner % squares_across_ * square + tile % tiles_across * tile_width + in_tile % tile_width;
-        job.y = corner / squares_across_ * square + tile / tiles_across * tile_height + in_tile / tile_width;
+        job.x = corner % squares_across_ * square_side + tile % tiles_in_row * tile_columns + in_tile % tile_columns;
+        job.y = corner / squares_across_ * square_side + tile / tiles_in_row * tile_rows + in_tile / tile_columns;
         job.x = job.x * interleave_ + pass % interleave_;
         job.y = job.y * interleave_ + pass / interleave_;
         job.sample = first_sample + (one_pixel ? lane : 0);

@@ -13,19 +13,20 @@ namespace {
 
 using Stage = WavefrontKernel::Stage;
 using traces::RayType;
-constexpr std::size_t lanes = traces::warp_lanes;
+constexpr std::size_t warp_width = traces::warp_lanes;
 
-RayType type_of(std::uint32_t vertex) { return vertex == 0 ? RayType::camera : RayType::bounce; }
+RayType ray_type(std::uint32_t vertex) { return vertex == 0 ? RayType::camera : RayType::bounce; }
 
 template <class Body>
-void for_each(std::uint32_t mask, Body body) {
+void for_each_lane(std::uint32_t mask, Body body) {
     for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
 /// So many warps, if the paths of a picture as large leave memory for other things.
 std::size_t affordable(std::size_t warps) {
-    constexpr std::uint64_t bytes = sizeof(PathLanes) + sizeof(traces::WarpTrace) + 5 * lanes * sizeof(std::uint32_t);
-    MemoryBudget().check(warps * bytes, "a wavefront", fmt::format("its {} paths", warps * lanes));
+    constexpr std::uint64_t bytes =
+        sizeof(PathLanes) + sizeof(traces::WarpTrace) + 5 * warp_width * sizeof(std::uint32_t);
+    MemoryBudget().check(warps * bytes, "a wavefront", fmt::format("its {} paths", warps * warp_width));
     return warps;
 }
 
@@ -34,7 +35,7 @@ template <class Element>
 void record(WarpRecorder& recorder, std::uint32_t mask, std::uint8_t region, Element element) {
     if (mask == 0) return;
     OpenRecord out = recorder.open(mask, region);
-    for_each(mask, [&](unsigned l) {
+    for_each_lane(mask, [&](unsigned l) {
         *out.element++ = element(l);
         *out.symbol++ = traces::symbol::end_of_ray;
     });
@@ -64,27 +65,27 @@ Wavefront::Wavefront(const std::vector<WavefrontKernel>& kernels, const Wavefron
     : kernels_(kernels),
       buffers_(buffers),
       order_(order),
-      state_(affordable(buffers.slots / lanes)),
+      state_(affordable(buffers.slots / warp_width)),
       camera_masks_(state_.size()),
       shaded_(state_.size()) {
-    std::array<PathLane, lanes> of_warp;
+    std::array<PathLane, warp_width> of_warp;
     for (std::uint32_t warp = 0; warp < state_.size(); ++warp) {
         camera_masks_[warp] = jobs(warp, of_warp);
-        for_each(camera_masks_[warp], [&](unsigned l) { state_[warp].job[l] = of_warp[l]; });
+        for_each_lane(camera_masks_[warp], [&](unsigned l) { state_[warp].job[l] = of_warp[l]; });
     }
 }
 
 Wavefront::Work Wavefront::camera_work(std::uint32_t warp) const {
     Work w;
     w.mask = camera_masks_[warp];
-    for_each(w.mask, [&](unsigned l) { w.place[l] = w.slot[l] = warp * lanes + l; });
+    for_each_lane(w.mask, [&](unsigned l) { w.place[l] = w.slot[l] = warp * warp_width + l; });
     return w;
 }
 
 Wavefront::Work Wavefront::work(const std::vector<std::uint32_t>& list, std::uint32_t warp) const {
     Work w;
-    const std::size_t first = std::size_t{warp} * lanes;
-    for (unsigned l = 0; l < lanes && first + l < list.size(); ++l) {
+    const std::size_t first = std::size_t{warp} * warp_width;
+    for (unsigned l = 0; l < warp_width && first + l < list.size(); ++l) {
         w.mask |= 1U << l;
         w.place[l] = static_cast<std::uint32_t>(first + l);
         w.slot[l] = list[first + l];
@@ -119,7 +120,7 @@ void Wavefront::trace_sort(RecordingWorker& worker, std::uint32_t warp) const {
     record(worker.recorder, w.mask, buffers_.sort_rays, place);
     if (!order_->compresses_runs()) return;
     std::uint32_t first_of_run = 0;
-    for_each(w.mask, [&](unsigned l) {
+    for_each_lane(w.mask, [&](unsigned l) {
         const std::uint32_t i = w.place[l];
         if (i == 0 || keys_[i] != keys_[i - 1]) first_of_run |= 1U << l;
     });
@@ -136,10 +137,10 @@ void Wavefront::trace_extend(RecordingWorker& worker, std::uint32_t warp, traces
     PathLanes& p = worker.lanes;
     PathStages& path = *worker.integrator->stages();
     WarpRecorder& recorder = worker.recorder;
-    for_each(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / lanes], w.slot[l] % lanes); });
+    for_each_lane(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / warp_width], w.slot[l] % warp_width); });
 
     const auto slot = [&](unsigned l) { return w.slot[l]; };
-    recorder.kind(type_of(vertex), bounce);
+    recorder.kind(ray_type(vertex), bounce);
     if (vertex == 0) {
         path.generate(w.mask, p);
     } else {
@@ -147,7 +148,7 @@ void Wavefront::trace_extend(RecordingWorker& worker, std::uint32_t warp, traces
                [&](unsigned l) { return buffers_.queue_entry(vertex, w.place[l]); });
         record(recorder, w.mask, buffers_.rays.read, slot);
     }
-    worker.traversal->closest(w.mask, type_of(vertex), bounce, p.rays, p.hits);
+    worker.traversal->closest(w.mask, ray_type(vertex), bounce, p.rays, p.hits);
     if (vertex == 0) {
         record(recorder, w.mask, buffers_.rays.write, slot);
         record(recorder, w.mask, buffers_.paths.write, slot);
@@ -163,7 +164,7 @@ void Wavefront::trace_extend(RecordingWorker& worker, std::uint32_t warp, traces
     shaded.shadow = path.aim_at_light(lit, vertex, p);
     shaded.alive = path.scatter(lit, vertex, p);
     recorder.store(shaded.texels);
-    for_each(w.mask, [&](unsigned l) { state_[w.slot[l] / lanes].copy(w.slot[l] % lanes, p, l); });
+    for_each_lane(w.mask, [&](unsigned l) { state_[w.slot[l] / warp_width].copy(w.slot[l] % warp_width, p, l); });
 }
 
 void Wavefront::trace_shade(RecordingWorker& worker, std::uint32_t warp) const {
@@ -172,7 +173,7 @@ void Wavefront::trace_shade(RecordingWorker& worker, std::uint32_t warp) const {
     const Work w = vertex == 0 ? camera_work(warp) : work(queue_, warp);
     WarpRecorder& recorder = worker.recorder;
     const auto slot = [&](unsigned l) { return w.slot[l]; };
-    recorder.kind(type_of(vertex), static_cast<std::uint8_t>(vertex));
+    recorder.kind(ray_type(vertex), static_cast<std::uint8_t>(vertex));
     if (vertex > 0)
         record(recorder, w.mask, buffers_.queues.read,
                [&](unsigned l) { return buffers_.queue_entry(vertex, w.place[l]); });
@@ -196,7 +197,7 @@ void Wavefront::trace_connect(RecordingWorker& worker, std::uint32_t warp) {
     const auto bounce = static_cast<std::uint8_t>(kernel().vertex);
     PathLanes& p = worker.lanes;
     WarpRecorder& recorder = worker.recorder;
-    for_each(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / lanes], w.slot[l] % lanes); });
+    for_each_lane(w.mask, [&](unsigned l) { p.copy(l, state_[w.slot[l] / warp_width], w.slot[l] % warp_width); });
     recorder.kind(RayType::shadow, bounce);
     record(recorder, w.mask, buffers_.shadows.read, [&](unsigned l) { return w.place[l]; });
     const std::uint32_t unblocked =
@@ -205,7 +206,7 @@ void Wavefront::trace_connect(RecordingWorker& worker, std::uint32_t warp) {
     const auto slot = [&](unsigned l) { return w.slot[l]; };
     record(recorder, unblocked, buffers_.paths.read, slot);
     record(recorder, unblocked, buffers_.paths.write, slot);
-    for_each(unblocked, [&](unsigned l) { state_[w.slot[l] / lanes].copy(w.slot[l] % lanes, p, l); });
+    for_each_lane(unblocked, [&](unsigned l) { state_[w.slot[l] / warp_width].copy(w.slot[l] % warp_width, p, l); });
 }
 
 void Wavefront::append() {
@@ -218,8 +219,8 @@ void Wavefront::append() {
         const Work w = vertex == 0 ? camera_work(warp) : work(queue_, warp);
         shaded.first_shadow = static_cast<std::uint32_t>(shadows_.size());
         shaded.first_alive = static_cast<std::uint32_t>(next_queue_.size());
-        for_each(shaded.shadow, [&](unsigned l) { shadows_.push_back(w.slot[l]); });
-        for_each(shaded.alive, [&](unsigned l) { next_queue_.push_back(w.slot[l]); });
+        for_each_lane(shaded.shadow, [&](unsigned l) { shadows_.push_back(w.slot[l]); });
+        for_each_lane(shaded.alive, [&](unsigned l) { next_queue_.push_back(w.slot[l]); });
     }
 }
 

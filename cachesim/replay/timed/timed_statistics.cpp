@@ -34,13 +34,13 @@ void for_each_counter(TimedStatistics& a, const TimedStatistics& b, const Use& u
     use(a.seconds, b.seconds);
 }
 
-constexpr auto add = [](auto& mine, const auto& others) { mine += others; };
+constexpr auto add_up = [](auto& mine, const auto& others) { mine += others; };
 constexpr auto take_away = [](auto& mine, const auto& others) { mine -= others; };
 
 }  // namespace
 
 LevelAnswers& LevelAnswers::operator+=(const LevelAnswers& other) {
-    for_each_counter(*this, other, add);
+    for_each_counter(*this, other, add_up);
     return *this;
 }
 
@@ -50,7 +50,7 @@ LevelAnswers& LevelAnswers::operator-=(const LevelAnswers& other) {
 }
 
 TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
-    for_each_counter(*this, other, add);
+    for_each_counter(*this, other, add_up);
     warp_slots = other.warp_slots ? other.warp_slots : warp_slots;
     peak_l2_gb_s = std::max(peak_l2_gb_s, other.peak_l2_gb_s);
     peak_dram_gb_s = std::max(peak_dram_gb_s, other.peak_dram_gb_s);

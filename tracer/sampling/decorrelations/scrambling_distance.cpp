@@ -17,11 +17,11 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr ParameterEntry mu_parameter{.name = "mu",
-                                      .description = "the distance itself, instead of the automatic one",
-                                      .fallback = "",
-                                      .label = "mu",
-                                      .remedy = "give mu such as 0.1"};
+constexpr ParameterEntry distance_parameter{.name = "mu",
+                                            .description = "the distance itself, instead of the automatic one",
+                                            .fallback = "",
+                                            .label = "mu",
+                                            .remedy = "give mu such as 0.1"};
 constexpr ParameterEntry multiplier_parameter{.name = "cycles-multiplier",
                                               .description = "Blender's Scrambling Distance Multiplier",
                                               .fallback = "1",
@@ -84,8 +84,8 @@ private:
 
 std::unique_ptr<Decorrelation> make_scrambling_distance(const Parameters& parameters, const SampleSet& samples,
                                                         const Sequence&) {
-    if (parameters.has(mu_parameter.name))
-        return std::make_unique<ScramblingDistance>(samples.seed, parameters.real(mu_parameter), "");
+    if (parameters.has(distance_parameter.name))
+        return std::make_unique<ScramblingDistance>(samples.seed, parameters.real(distance_parameter), "");
     const CyclesSettings cycles = cycles_of(parameters);
     return std::make_unique<ScramblingDistance>(
         samples.seed, cycles_distance(cycles, samples.spp),
@@ -93,7 +93,7 @@ std::unique_ptr<Decorrelation> make_scrambling_distance(const Parameters& parame
 }
 
 std::vector<std::string> reads_of(const Parameters& given) {
-    if (given.has(mu_parameter.name)) return {mu_parameter.name};
+    if (given.has(distance_parameter.name)) return {distance_parameter.name};
     std::vector<std::string> all{multiplier_parameter.name};
     const CyclesSettings c = cycles_of(given);
     if (c.noise_threshold) all.emplace_back(min_samples_parameter.name);
@@ -110,7 +110,7 @@ DecorrelationEntry scrambling_distance_entry() {
                 "a random offset in [0, d) per pixel and dimension, d automatic or --mu: Blender with the pattern "
                 "Tabulated Sobol (off in a default Blender, whose pattern is blue noise)",
             .make = make_scrambling_distance,
-            .parameters = {mu_parameter, multiplier_parameter, min_samples_parameter, threshold_parameter},
+            .parameters = {distance_parameter, multiplier_parameter, min_samples_parameter, threshold_parameter},
             .reads = reads_of};
 }
 

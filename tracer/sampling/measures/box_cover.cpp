@@ -5,8 +5,6 @@
 namespace raycache::tracer {
 namespace {
 
-constexpr std::uint64_t whole_circle = std::uint64_t{1} << 32;
-
 /// An interval of the circle where it meets a cell that starts at 0 and is `width` wide: up to two pieces.
 struct Pieces {
     unsigned count = 0;

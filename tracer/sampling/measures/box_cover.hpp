@@ -12,6 +12,9 @@
 
 namespace raycache::tracer {
 
+/// Values of one dimension, which runs from 0 to 1 and, its ends joined, is a circle.
+inline constexpr std::uint64_t whole_circle = std::uint64_t{1} << 32;
+
 /// [x0, x1) x [y0, y1), measured from the lower left corner of the cell it is clipped to.
 struct CellBox {
     std::uint64_t x0, x1, y0, y1;

@@ -12,8 +12,6 @@
 namespace raycache::tracer {
 namespace {
 
-constexpr std::uint64_t whole_circle = std::uint64_t{1} << 32;
-
 /// Whether an empty open square of this side has its lower left corner (a, b) in the cell. It is empty unless some
 /// point lies in it, a < p.x < a + side; so the corners of squares that hold p are p.x - side < a < p.x. The largest
 /// square touches points on two opposite sides, and can be slid until it does so in the other axis: integers suffice.

@@ -13,8 +13,6 @@
 namespace raycache::tracer {
 namespace {
 
-constexpr std::uint64_t whole_circle = std::uint64_t{1} << 32;
-
 /// One value of a pixel is uniform in [0, 1) over all pixels, wherever its base point lies.
 constexpr std::array<std::string_view, 4> uniform_everywhere{"cranley-patterson", "owen", "random", "blue-noise"};
 

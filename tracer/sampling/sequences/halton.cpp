@@ -11,13 +11,13 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr std::uint32_t table_dimensions = 1024;
+constexpr std::uint32_t halton_dimensions = 1024;
 
 __extension__ using Wide = unsigned __int128;  // r * 2^32 needs up to 77 bits
 
 class Halton final : public Sequence {
 public:
-    Halton() : bases_(first_primes(table_dimensions)) {}
+    Halton() : bases_(first_primes(halton_dimensions)) {}
 
     std::uint32_t sample(std::uint32_t index, std::uint32_t dimension) const override {
         const std::uint64_t base = bases_[dimension];
@@ -30,7 +30,7 @@ public:
         return static_cast<std::uint32_t>((Wide{reversed} << 32) / scale);
     }
 
-    std::uint32_t dimensions() const override { return table_dimensions; }
+    std::uint32_t dimensions() const override { return halton_dimensions; }
 
 private:
     std::vector<std::uint32_t> bases_;

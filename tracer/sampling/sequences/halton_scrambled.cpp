@@ -15,7 +15,7 @@ namespace raycache::tracer {
 
 namespace {
 
-constexpr std::uint32_t table_dimensions = 1024;
+constexpr std::uint32_t scrambled_dimensions = 1024;
 
 __extension__ using Wide = unsigned __int128;  // r * 2^32 needs up to 77 bits
 
@@ -27,7 +27,7 @@ std::uint32_t below(std::uint32_t bound, std::uint32_t random) {
 class ScrambledHalton final : public Sequence {
 public:
     explicit ScrambledHalton(std::uint64_t seed)
-        : bases_(first_primes(table_dimensions)), key_(seed, HashPurpose::point_scramble) {}
+        : bases_(first_primes(scrambled_dimensions)), key_(seed, HashPurpose::point_scramble) {}
 
     std::uint32_t sample(std::uint32_t index, std::uint32_t dimension) const override {
         const std::uint32_t base = bases_[dimension];
@@ -48,7 +48,7 @@ public:
         return static_cast<std::uint32_t>((Wide{scrambled} << 32) / scale);
     }
 
-    std::uint32_t dimensions() const override { return table_dimensions; }
+    std::uint32_t dimensions() const override { return scrambled_dimensions; }
 
 private:
     std::vector<std::uint32_t> bases_;
