@@ -17,6 +17,12 @@ void take(Worst& worst, const cachesim::Estimate& e, const std::string& what) {
     if (std::isfinite(e.mean) && !(relative <= worst.error)) worst = {relative, what};
 }
 
+/// What level number `level` fetches, over what L1 is asked for.
+double share_of_asked(const cachesim::Row& row, std::size_t level) {
+    const auto asked = static_cast<double>(row.totals.levels[0].sectors);
+    return asked == 0 ? 0 : static_cast<double>(row.totals.fetched(level, row.caches.levels)) / asked;
+}
+
 Worst worst_of(const std::vector<cachesim::Series>& all, const std::string& baseline) {
     Worst worst;
     const cachesim::Report report = cachesim::make_report(all, baseline, cachesim::GroupBy::none);
@@ -26,6 +32,10 @@ Worst worst_of(const std::vector<cachesim::Series>& all, const std::string& base
         const auto figures = cachesim::bytes_figures(row.caches.levels);
         for (std::size_t level = 0; level < figures.size(); ++level) {
             if (level + 1 == figures.size() && !row.windows->last_cache_full) continue;  // nothing steady to estimate
+            const cachesim::Row* const base = cachesim::find_baseline(
+                report.rows, row, baseline, [&](const cachesim::Row& other) { return other.group == row.group; });
+            if (std::max(share_of_asked(row, level), base ? share_of_asked(*base, level) : 0) < negligible_share)
+                continue;
             const cachesim::TrafficKey key = compared ? figures[level].ratio : figures[level].mean;
             if (row[key])
                 take(worst, *row[key],

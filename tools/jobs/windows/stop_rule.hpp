@@ -13,8 +13,12 @@ struct Worst {
     std::string of;
 };
 
+/// Bytes below this share of those asked of L1 are not waited for: nothing hangs on them, and what hardly occurs takes
+/// the longest to count. They keep their intervals.
+inline constexpr double negligible_share = 0.01;
+
 /// Of ratios to the baseline where there is one, else of means: predicted times if there are any, else bytes per ray of
-/// every level. `baseline`: as EstimateSettings has it.
+/// every level, where they are not negligible. `baseline`: as EstimateSettings has it.
 Worst worst_error(const Predicted&, const std::string& baseline);
 
 }  // namespace raycache::tools
