@@ -46,7 +46,7 @@ class Faults(ProgramTest):
             "capture": (["capture", *SCENE, *SMALL, "-o", "t.rct"], ["t.rct"]),
             "render": (["render", *SCENE, "--resolution", "16x16", "--spp", "1", "-o", "t.png"], ["t.png"]),
             "replay": (["replay", "in.rct", *GPU, "--save", "t"], ["t.csv", "t.json", "t.txt"]),
-            "compare": (["compare", "--scene", *SCENE, *SMALL, *GPU, "--save", "c"], ["c.csv", "c.json", "c.txt"]),
+            "compare": (["compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--save", "c"], ["c.csv", "c.json", "c.txt"]),
             "explain": (["explain", "in.rct", "in.rct", *GPU, "--heatmap", "h.exr"], ["h.exr", "h.png"]),
             "quality": ([*QUALITY, "--reference", "r.exr", "--output", "pictures"], ["pictures/index.png", "r.exr"]),
             "export": (["export", "in.rct", *SECTORS, "-o", "s.csv"], ["s.csv"]),
@@ -83,10 +83,10 @@ class FullDisk(Faults):
                     self.assertEqual(full.stdout, table.stdout)
 
     def test_a_file_that_does_not_fit_does_not_prevent_the_others(self):
-        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--save", "whole")
+        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--save", "whole")
         whole = {end: self.path("whole" + end).read_bytes() for end in (".csv", ".json", ".txt")}
         most = max(whole, key=lambda end: len(whole[end]))
-        result = self.run_program("compare", "--scene", *SCENE, *SMALL, *GPU, "--save", "c",
+        result = self.run_program("compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--save", "c",
                                   preexec_fn=at_most(len(whole[most]) - 1))
         error, = self.errors_of(result)
         self.assertIn("c" + most, error)
@@ -112,7 +112,7 @@ class Scripts(Faults):
     """tools/report.py and tools/plot_sweep write as the program does."""
 
     def test_a_page_that_does_not_fit_leaves_the_old_one_and_no_partial_file(self):
-        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--save", "c")
+        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--save", "c")
         self.path("page.html").write_text("old")
         before = self.listing()
         command = [sys.executable, ROOT / "tools/report.py", "c.json", "-o", "page.html"]
@@ -129,7 +129,7 @@ class Scripts(Faults):
 
 
     def test_their_input_may_come_through_a_pipe_and_one_that_nobody_writes_is_refused(self):
-        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--save", "c")
+        self.succeeds("compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--save", "c")
         command = [sys.executable, ROOT / "tools/report.py", "pipe", "-o", "page.html"]
         os.mkfifo(self.path("pipe"))
         writer = threading.Thread(target=lambda: self.path("pipe").write_bytes(self.path("c.json").read_bytes()))
@@ -191,7 +191,7 @@ class Streams(Faults):
 
     def test_words_that_stderr_cannot_take_do_not_end_the_work(self):
         with open("/dev/full", "wb") as full:
-            done = subprocess.run([RAYCACHE, "compare", "--scene", *SCENE, *SMALL, *GPU, "--spp", "4", "--save", "c"],
+            done = subprocess.run([RAYCACHE, "compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--spp", "4", "--save", "c"],
                                   check=False, cwd=self.folder, stdout=subprocess.PIPE, stderr=full, timeout=300)
         self.assertEqual(done.returncode, 0)
         self.assertEqual(self.path("c.txt").read_bytes(), done.stdout)

@@ -105,7 +105,7 @@ class TwoWriters(Ends):
         pairs = [
             (["t.rct"], ["capture", *SCENE, "--resolution", "96x96", "-o", "t.rct", "--seed"]),
             (["t.csv", "t.json", "t.txt"],
-             ["compare", "--scene", *SCENE, *SMALL, *GPU, "--strategy", "micro-jitter", "--save", "t", "--seed"]),
+             ["compare", "--scene", *SCENE, *SMALL, *GPU, "--exact", "--strategy", "micro-jitter", "--save", "t", "--seed"]),
             (["t.exr"], ["render", *SCENE, "--resolution", "96x96", "--spp", "1", "--strategy", "random", "-o", "t.exr", "--seed"]),
         ]
         for files, command in pairs:

@@ -63,13 +63,13 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
     job.estimate = o->estimate.settings(*command, job.launches, why_exact);
     job.estimate.baseline = o->report.baseline;
     return [o, command, job, gpus, why_exact] {
-        if (!why_exact.empty()) warn(why_exact);
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
         else
             warn_of_idle(*command, job.launches.captures());
         const FileNames outputs = o->report.outputs();
         check_outputs(outputs, warn);
+        if (!why_exact.empty()) warn(why_exact);
         const auto limit = o->threads.apply();
         Progress progress("compare");
         o->report.publish(run(job, gpus, progress, outputs));

@@ -79,12 +79,12 @@ Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) 
     job.check();
     refuse_overwriting(inputs.traces, outputs);
     return [o, command, job, gpu, outputs, why_exact] {
-        if (!why_exact.empty()) warn(why_exact);
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
         else
             warn_of_idle(*command, job.launches.captures());
         check_outputs(outputs, warn);
+        if (!why_exact.empty()) warn(why_exact);
         if (job.pixels) tracer::check_drawing();
         const auto limit = o->threads.apply();
         Progress progress("explain");
