@@ -30,6 +30,28 @@ Function real(const char* name) {
     return reinterpret_cast<Function>(address);
 }
 
+/// Tells the sanitizer at the end of a scope, however it ends: with an exception, too.
+class ReleaseAtEnd {
+public:
+    explicit ReleaseAtEnd(void* place) : place_(place) {}
+    ~ReleaseAtEnd() { __tsan_release(place_); }
+    ReleaseAtEnd(const ReleaseAtEnd&) = delete;
+    ReleaseAtEnd& operator=(const ReleaseAtEnd&) = delete;
+
+private:
+    void* place_;
+};
+class AcquireAtEnd {
+public:
+    explicit AcquireAtEnd(void* place) : place_(place) {}
+    ~AcquireAtEnd() { __tsan_acquire(place_); }
+    AcquireAtEnd(const AcquireAtEnd&) = delete;
+    AcquireAtEnd& operator=(const AcquireAtEnd&) = delete;
+
+private:
+    void* place_;
+};
+
 /// A task that is spawned in another's place, runs it, and then goes away.
 class OrderedTask final : public d1::task {
 public:
@@ -57,11 +79,10 @@ public:
     explicit OrderedDelegate(d1::delegate_base& inner) : inner_(&inner) { __tsan_release(&begin_); }
     BEFORE_ORDER bool operator()() const override {
         __tsan_acquire(&begin_);
-        const bool result = (*inner_)();
-        __tsan_release(&end_);
-        return result;
+        const ReleaseAtEnd end(&end_);
+        return (*inner_)();
     }
-    void acquire_end() { __tsan_acquire(&end_); }
+    void* end() { return &end_; }
 
 private:
     d1::delegate_base* inner_;
@@ -88,13 +109,13 @@ public:
     }
     BEFORE_ORDER void* operator()(void* item) override {
         __tsan_acquire(&ends_->begin);
+        const ReleaseAtEnd end(&ends_->end);
         if (is_serial()) __tsan_acquire(this);
         if (item != nullptr) __tsan_acquire(item);
         running = this;
         void* result = (*inner_)(item);
         if (result != nullptr) __tsan_release(result);
         if (is_serial()) __tsan_release(this);
-        __tsan_release(&ends_->end);
         return result;
     }
     BEFORE_ORDER void finalize(void* item) override {
@@ -177,8 +198,8 @@ void execute(d1::task_arena_base& arena, d1::delegate_base& delegate) {
     static const auto function = real<void (*)(d1::task_arena_base&, d1::delegate_base&)>(
         "_ZN3tbb6detail2r17executeERNS0_2d115task_arena_baseERNS2_13delegate_baseE");
     OrderedDelegate ordered(delegate);
+    const AcquireAtEnd end(ordered.end());
     function(arena, ordered);
-    ordered.acquire_end();
 }
 
 void parallel_pipeline(d1::task_group_context& context, std::size_t tokens, const d1::filter_node& stages) {
@@ -187,8 +208,8 @@ void parallel_pipeline(d1::task_group_context& context, std::size_t tokens, cons
     Ends ends;
     const d1::filter_node_ptr ordered(with_order(stages, &ends));
     __tsan_release(&ends.begin);
+    const AcquireAtEnd end(&ends.end);
     function(context, tokens, *ordered);
-    __tsan_acquire(&ends.end);
 }
 
 void set_end_of_input(d1::base_filter&) {

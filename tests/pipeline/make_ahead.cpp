@@ -1,32 +1,29 @@
 #include "tools/jobs/make_ahead.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "on_threads.hpp"
+
 using raycache::tools::make_ahead;
 
 namespace {
 
-/// On one thread and on four.
 template <class Test>
-void on_threads(const Test& test) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 4);
+void on_one_and_four(const Test& test) {
     for (const int threads : {1, 4}) {
         CAPTURE(threads);
-        tbb::task_arena(threads).execute([&] { test(threads); });
+        raycache::test::on_threads(threads, [&] { test(threads); });
     }
 }
 
 }  // namespace
 
 TEST_CASE("parts that are made ahead are used in order, few at a time", "[threads]") {
-    on_threads([](int threads) {
+    on_one_and_four([](int threads) {
         std::vector<std::size_t> used;
         std::atomic<int> waiting{0}, most{0};
         make_ahead(
@@ -47,7 +44,7 @@ TEST_CASE("parts that are made ahead are used in order, few at a time", "[thread
 }
 
 TEST_CASE("of parts that cannot be made the first says why, after those before it were used", "[threads]") {
-    on_threads([](int) {
+    on_one_and_four([](int) {
         for (int round = 0; round < 20; ++round) {
             std::size_t used = 0;
             CHECK_THROWS_WITH(make_ahead(
@@ -64,7 +61,7 @@ TEST_CASE("of parts that cannot be made the first says why, after those before i
 }
 
 TEST_CASE("a part that cannot be used is the last, and none is none", "[threads]") {
-    on_threads([](int) {
+    on_one_and_four([](int) {
         std::size_t used = 0;
         CHECK_THROWS_WITH(make_ahead(
                               100, [](std::size_t i) { return i; },

@@ -1,17 +1,17 @@
 // A functional replay counts the same on any number of threads.
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <catch2/catch.hpp>
 #include <vector>
 
 #include "cachesim/replay/replay.hpp"
-#include "random_launch.hpp"
+#include "on_threads.hpp"
+#include "tests/cachesim/random_launch.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
 using namespace raycache::cachesim::test;
+using raycache::test::on_threads;
 using traces::ObjectKind;
 
 namespace {
@@ -49,13 +49,6 @@ Counts count(const Gpu& gpu, const Launch& launch, std::size_t kernel_warps = ~s
     counts.batches = replay.batches();
     counts.fills = replay.last_level_fills();
     return counts;
-}
-
-template <class Run>
-auto on_threads(int threads, const Run& run) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);
-    tbb::task_arena arena(threads);
-    return arena.execute(run);
 }
 
 /// Long enough that windows are given to threads.

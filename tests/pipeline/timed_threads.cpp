@@ -1,7 +1,4 @@
 // A timed replay whose SMs several threads share.
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <array>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -11,11 +8,14 @@
 #include <thread>
 
 #include "cachesim/replay/timed/each_sm.hpp"
-#include "timed_cases.hpp"
+#include "on_threads.hpp"
+#include "tests/cachesim/timed_cases.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
 using namespace raycache::cachesim::test;
+using raycache::test::most_threads;
+using raycache::test::on_threads;
 using traces::ObjectKind;
 
 namespace {
@@ -54,9 +54,7 @@ Gpu random_gpu(std::uint64_t seed) {
 
 /// By `threads` threads. What is counted, in a list.
 std::vector<double> counts(int threads, const Gpu& gpu, const Launch& launch) {
-    tbb::task_arena arena(threads);
-    TimedStatistics t;
-    arena.execute([&] { t = timed(gpu, launch); });
+    const TimedStatistics t = on_threads(threads, [&] { return timed(gpu, launch); });
     std::vector<double> all{static_cast<double>(t.cycles),       static_cast<double>(t.instructions),
                             static_cast<double>(t.dram_sectors), static_cast<double>(t.visit_cycles),
                             static_cast<double>(t.warps),        static_cast<double>(t.warp_cycles)};
@@ -69,12 +67,9 @@ std::vector<double> counts(int threads, const Gpu& gpu, const Launch& launch) {
     return all;
 }
 
-const int most_threads = 8;
-
 }  // namespace
 
 TEST_CASE("a timed replay counts the same on one thread and on several, on any GPU", "[threads]") {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, most_threads);
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const Gpu gpu = random_gpu(seed);
         const Launch launch = random_launch(
@@ -88,7 +83,6 @@ TEST_CASE("a timed replay counts the same on one thread and on several, on any G
 }
 
 TEST_CASE("a timed replay whose lines are numbered as they come counts the same on several threads", "[threads]") {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, most_threads);
     Launch launch = random_launch({region(ObjectKind::node, 0x200000, 64, 64, 300)}, 250, 20, 1);
     launch.regions.push_back(region(ObjectKind::texel, 1ull << 40, 16, 4096, 1u << 31));
     const Gpu gpu = random_gpu(1);
@@ -96,7 +90,6 @@ TEST_CASE("a timed replay whose lines are numbered as they come counts the same 
 }
 
 TEST_CASE("SMs that are worth it go to several threads, others stay on one", "[threads]") {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, most_threads);
     std::atomic<int> begun{0};
     std::array<std::thread::id, 2> by{};
     const auto meet = [&](std::size_t sm) {  // the other one, for which it takes another thread
@@ -106,12 +99,12 @@ TEST_CASE("SMs that are worth it go to several threads, others stay on one", "[t
         while (begun < 2 && std::chrono::steady_clock::now() - start < std::chrono::seconds(20))
             std::this_thread::yield();
     };
-    tbb::task_arena(2).execute([&] { for_each_sm(2, true, meet); });
+    on_threads(2, [&] { for_each_sm(2, true, meet); });
     CHECK(begun == 2);
     CHECK(by[0] != by[1]);
     const auto note = [&](std::size_t sm) { by[sm] = std::this_thread::get_id(); };
-    tbb::task_arena(2).execute([&] { for_each_sm(2, false, note); });
+    on_threads(2, [&] { for_each_sm(2, false, note); });
     CHECK(by[0] == by[1]);
-    tbb::task_arena(1).execute([&] { for_each_sm(2, true, note); });
+    on_threads(1, [&] { for_each_sm(2, true, note); });
     CHECK(by[0] == by[1]);
 }
