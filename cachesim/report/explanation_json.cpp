@@ -56,13 +56,14 @@ Json level(const LevelFindings& found) {
     return json;
 }
 
-Json trace(const ExplainedTrace& t, const CacheUnits& caches) {
+Json trace(const Explanation& e, const ExplainedTrace& t) {
+    const CacheUnits caches = e.caches();
     const Counters all = t.totals();
     Json json{{"name", t.name}, {"totals", counters(all, caches)}};
     for (const TrafficKey key :
          {TrafficKey("l1_hit_rate"), TrafficKey("l1_visit_hit_rate"), TrafficKey("dram_compulsory_share")}) {
         const TrafficFigure& figure = traffic_figures[key.index];
-        json[figure.name] = json_of(figure.value(all, caches));
+        json[figure.name] = figure.of_cold_launch && e.windows ? Json(nullptr) : json_of(figure.value(all, caches));
     }
     Json& levels = json["levels"] = Json::object();
     for (std::size_t i = 0; i < t.findings.levels.size(); ++i)
@@ -121,8 +122,8 @@ std::string to_json(const Explanation& e) {
         json["cache_locality"] = json_of(all->cache_locality());
     }
     json["groups"] = groups(e);
-    json["base"] = trace(e.base, e.caches());
-    json["other"] = trace(e.other, e.caches());
+    json["base"] = trace(e, e.base);
+    json["other"] = trace(e, e.other);
     if (!e.no_time.empty()) json["timed"] = nullptr;
     for (const SpeedUp& s : e.speed_ups)
         json["timed"].push_back({{"replay", s.replay.name},

@@ -16,6 +16,7 @@ namespace {
 
 /// Whether the figure says anything of such a row.
 bool concerns(const TrafficFigure& figure, const Row& row) {
+    if (figure.of_cold_launch && row.windows) return false;
     switch (figure.presence) {
         case Presence::three_levels:
             return row.caches.levels == 3;
@@ -90,7 +91,7 @@ void widen(Row& row) {
 void note_compulsory(const Report& report, Notes& notes) {
     std::vector<std::string> gpus;
     for (const Row& row : report.rows)
-        if (row["dram_compulsory_share"]->mean >= mostly_compulsory &&
+        if (difference_of(row).dram_compulsory_share >= mostly_compulsory &&
             std::find(gpus.begin(), gpus.end(), row.gpu) == gpus.end())
             gpus.push_back(row.gpu);
     if (!gpus.empty()) notes.add(compulsory_note(fmt::format("{}", fmt::join(gpus, ", "))));

@@ -101,7 +101,7 @@ Difference difference_of(const Row& row) {
     for (const BytesFigures& bytes : bytes_figures(row.caches.levels))
         if (row[bytes.ratio]) d.bytes.push_back(*row[bytes.ratio]);
     d.factors = row.factors;
-    d.dram_compulsory_share = row["dram_compulsory_share"]->mean;
+    d.dram_compulsory_share = row["dram_compulsory_share"].value_or(Estimate{}).mean;
     d.windows = row.windows;
     d.traced = row.samples.size();
     d.spp = row.spp;

@@ -17,6 +17,13 @@ class Estimates(ProgramTest):
         self.assertEqual(len(chosen.json["rows"][0]["samples"]), 2)
         for whole in (exact, chosen):
             self.assertNotIn("steady state", whole.text)
+            self.assertIsNotNone(whole.json["rows"][0]["dram_compulsory_share"])
+
+    def test_the_steady_state_has_no_share_of_first_touches(self):
+        explained = self.succeeds("explain", *COMPARE[1:], "--counts-only", "--windows", "4", "--json").json
+        compared = self.succeeds(*COMPARE, "--windows", "4", "--json").json["rows"][0]
+        for counts in (compared, explained["base"], explained["other"]):
+            self.assertIsNone(counts["dram_compulsory_share"])
 
     def test_the_picture_is_a_real_one_unless_a_resolution_is_given(self):
         settings = self.succeeds("compare", *SCENE, "--spp", "1024", "--strategy", "coherent", *GPU, "--windows", "2",

@@ -74,7 +74,8 @@ struct Figure {
     unsigned part = 0;  ///< of the fields of CSV, which come part by part
     Presence presence = Presence::always;
 
-    bool of_factors = false;  ///< of the traffic identity: there where all its factors have a value
+    bool of_cold_launch = false;  ///< says nothing of the steady state: absent in estimates from windows
+    bool of_factors = false;      ///< of the traffic identity: there where all its factors have a value
     /// Of a timed report: absent where no time is predicted.
     bool in_time = false;
     double of_nothing = std::numeric_limits<double>::quiet_NaN();  ///< the quotient where the denominator is 0
