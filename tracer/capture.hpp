@@ -53,10 +53,6 @@ public:
     using Worker = RecordingWorker;
     std::unique_ptr<Worker> make_worker() const;
 
-    /// Calls sink(WarpTrace&&) for every warp of a launch, in order. Thread-safe with one worker per thread.
-    template <class Sink>
-    void trace_launch(Worker&, std::uint32_t launch, const Sink&) const;
-
     /// Traces one warp of a megakernel, replacing `out`. Thread-safe with one worker per thread; the result does not
     /// depend on the worker's past.
     void trace_warp(Worker&, std::uint32_t launch, std::uint32_t warp, traces::WarpTrace& out) const;
@@ -92,24 +88,6 @@ private:
     /// Base points of each launch: samples_per_launch of them.
     std::vector<std::vector<std::vector<std::uint32_t>>> base_points_;
 };
-
-template <class Sink>
-void Capture::trace_launch(Worker& worker, std::uint32_t launch, const Sink& sink) const {
-    const std::unique_ptr<Wavefront> wavefront = is_wavefront() ? begin_wavefront(launch) : nullptr;
-    const std::uint32_t per_kernel = header_.warps_per_kernel();
-    for (std::uint32_t warp = 0; warp < header_.warps_per_launch; ++warp) {
-        traces::WarpTrace trace;
-        if (!wavefront) {
-            trace_warp(worker, launch, warp, trace);
-        } else {
-            if (warp != 0 && warp % per_kernel == 0) wavefront->end_kernel();
-            wavefront->trace_warp(worker, warp % per_kernel, trace);
-            trace.launch = launch;
-            trace.warp = warp;
-        }
-        sink(std::move(trace));
-    }
-}
 
 /// Called from any thread with what was finished since the last call.
 using Progress = std::function<void(std::uint64_t warps, std::uint64_t rays)>;

@@ -58,7 +58,19 @@ CaptureSettings picture(const std::string& order = "", ThreadMap map = ThreadMap
 std::vector<traces::WarpTrace> all_warps(const Capture& capture, std::uint32_t launch = 0) {
     std::vector<traces::WarpTrace> warps;
     const auto worker = capture.make_worker();
-    capture.trace_launch(*worker, launch, [&](traces::WarpTrace&& warp) { warps.push_back(std::move(warp)); });
+    const auto wavefront = capture.is_wavefront() ? capture.begin_wavefront(launch) : nullptr;
+    const std::uint32_t per_kernel = capture.header().warps_per_kernel();
+    for (std::uint32_t number = 0; number < capture.header().warps_per_launch; ++number) {
+        traces::WarpTrace& warp = warps.emplace_back();
+        if (!wavefront) {
+            capture.trace_warp(*worker, launch, number, warp);
+            continue;
+        }
+        if (number != 0 && number % per_kernel == 0) wavefront->end_kernel();
+        wavefront->trace_warp(*worker, number % per_kernel, warp);
+        warp.launch = launch;
+        warp.warp = number;
+    }
     return warps;
 }
 

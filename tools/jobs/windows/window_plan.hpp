@@ -15,8 +15,7 @@
 
 namespace raycache::tools {
 
-/// How large everything is. The values are those that tools/bench found to need least time for a given error
-/// (docs/estimates.md).
+/// How large everything is: docs/estimates.md says what was weighed.
 struct WindowSizes {
     std::uint32_t indices = 64;        ///< of a block, at most
     std::uint32_t work_groups = 256;   ///< of work_warps each, traced and not replayed
