@@ -1,6 +1,7 @@
 // A scene with everything derived from it once: BVH, lights, texel layout. Shared by all captures and renders of it.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -40,7 +41,9 @@ public:
     const BvhLayout& bvh() const {
         std::call_once(bvh_once_, [this] {
             scene_.charge(scene_.triangle_count() * bvh_bytes, "BVH of its triangles");
-            bvh_ = layout_.make(source_(scene_, settings_), scene_);
+            BvhSettings settings = settings_;
+            settings.max_leaf_size = std::min(settings.max_leaf_size, layout_.max_leaf_size);
+            bvh_ = layout_.make(source_(scene_, settings), scene_);
         });
         return *bvh_;
     }

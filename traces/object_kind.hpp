@@ -31,8 +31,8 @@ enum class ObjectKind : std::uint8_t {
 /// What an access does to memory.
 enum class AccessType : std::uint8_t { read, write, stream };
 
-/// Which number of a GPU preset says how many instructions a visit takes beside its loads: node_instructions,
-/// triangle_instructions, texel_instructions. What a visit costs is the GPU's business, not the trace's.
+/// Which number of a GPU preset says how many instructions a visit takes beside its loads: node_instructions
+/// (node4_, node8_ where they have more children), triangle_instructions, texel_instructions. What a visit costs is the GPU's business, not the trace's.
 enum class Charge : std::uint8_t { node, triangle, texel };
 
 /// The role of a kind.

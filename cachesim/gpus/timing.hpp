@@ -43,6 +43,7 @@ struct Timing {
     /// Instructions between the loads of a visit and the next access, by kind of object, and the cycles from one to the
     /// next that depends on it.
     std::uint32_t node_instructions = 0, triangle_instructions = 0, texel_instructions = 0;
+    std::uint32_t node4_instructions = 0, node8_instructions = 0;  ///< of nodes of up to four, and more, children
     std::uint32_t leaf_instructions = 0;     ///< more, of a visit where lanes begin a leaf (timed/leaf_starts.hpp)
     std::uint32_t shading_instructions = 0;  ///< before lanes of a warp begin a ray: shading of the hit, set-up
     std::uint32_t instruction_latency = 4;

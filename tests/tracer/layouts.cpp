@@ -178,7 +178,7 @@ TEST_CASE("layouts: bvh2-breadth-first keeps nodes level by level, and what is v
 
 TEST_CASE("layouts: orders hold every inner node once, the root first; a tree that is a leaf has none") {
     const Bvh bvh = build_bvh(lit_soup());
-    for (const auto& order : {depth_first(bvh), breadth_first(bvh)}) {
+    for (const auto& order : {depth_first(bvh), breadth_first(bvh), van_emde_boas(bvh), treelets(bvh)}) {
         CHECK(order.front() == 0);
         std::vector<std::uint32_t> sorted = order;
         std::sort(sorted.begin(), sorted.end());
@@ -190,6 +190,8 @@ TEST_CASE("layouts: orders hold every inner node once, the root first; a tree th
     leaf.nodes.push_back({{}, 0, 1});
     CHECK(depth_first(leaf).empty());
     CHECK(breadth_first(leaf).empty());
+    CHECK(van_emde_boas(leaf).empty());
+    CHECK(treelets(leaf).empty());
 }
 
 TEST_CASE("layouts: one that keeps its nodes in two regions has both read, one behind the other, and textures behind") {

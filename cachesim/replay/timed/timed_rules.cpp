@@ -8,10 +8,12 @@ namespace raycache::cachesim {
 
 namespace {
 
-std::uint32_t instructions_of(const Timing& timing, traces::ObjectKind kind) {
-    switch (traces::role_of(kind).charge) {
+std::uint32_t instructions_of(const Timing& timing, const traces::Region& region) {
+    switch (traces::role_of(region.kind).charge) {
         case traces::Charge::node:
-            return timing.node_instructions;
+            return region.degree <= 2   ? timing.node_instructions
+                   : region.degree <= 4 ? timing.node4_instructions
+                                        : timing.node8_instructions;
         case traces::Charge::triangle:
             return timing.triangle_instructions;
         case traces::Charge::texel:
@@ -46,7 +48,7 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
         shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
-        instructions.push_back(instructions_of(timing, regions[i].kind));
+        instructions.push_back(instructions_of(timing, regions[i]));
     }
     if (timing.leaf_instructions > 0) leaves.emplace(regions);
 }

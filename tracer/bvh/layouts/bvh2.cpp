@@ -22,12 +22,6 @@ void set_box(Bvh2Node& node, int child, const Box& box) {
     node.z[child + 2] = box.upper.z;
 }
 
-std::uint32_t to_link(std::uint32_t ref) {
-    if (ref == ChildRef::nothing) return traces::no_link;
-    if (ChildRef::is_leaf(ref)) return (std::uint32_t{Bvh2::triangle_region} << 30) | ChildRef::first(ref);
-    return (std::uint32_t{Bvh2::node_region} << 30) | ref;
-}
-
 }  // namespace
 
 std::unique_ptr<Bvh2> make_bvh2(const Bvh& bvh, const Scene& scene, const std::vector<std::uint32_t>& order) {
@@ -56,7 +50,7 @@ std::unique_ptr<Bvh2> make_bvh2(const Bvh& bvh, const Scene& scene, const std::v
         root.child[0] = ref_of[0];
         root.child[1] = ChildRef::nothing;
     }
-    out->triangles = leaf_triangles(bvh, scene);
+    out->triangles = leaf_triangles(bvh.triangles, scene);
     out->siblings = bvh.depth + 1;
     return out;
 }
@@ -64,15 +58,9 @@ std::unique_ptr<Bvh2> make_bvh2(const Bvh& bvh, const Scene& scene, const std::v
 std::unique_ptr<Bvh2> Bvh2::make(const Bvh& bvh, const Scene& scene) { return make_bvh2(bvh, scene, depth_first(bvh)); }
 
 std::vector<traces::Region> Bvh2::regions() const {
-    traces::Region region;
-    region.kind = traces::ObjectKind::node;
-    region.base = 0x10'0000'0000;
-    region.element_size = region.stride = sizeof(Bvh2Node);
-    region.count = static_cast<std::uint32_t>(nodes.size());
-    region.degree = 2;
-    region.links.reserve(2 * nodes.size());
+    traces::Region region = node_region_of(nodes.size(), sizeof(Bvh2Node), 2);
     for (const Bvh2Node& node : nodes)
-        for (const std::uint32_t ref : node.child) region.links.push_back(to_link(ref));
+        for (const std::uint32_t ref : node.child) region.links.push_back(link_of(ref));
     return {std::move(region), leaf_triangle_region(triangles.size())};
 }
 

@@ -18,6 +18,7 @@ struct Bvh2 final : BvhLayout {
     static constexpr const char* name = "bvh2";
     static constexpr const char* description =
         "binary nodes of 64 B with both children's boxes, triangles of 48 B (Aila & Laine 2009)";
+    static constexpr std::uint32_t max_leaf_size = 7;
     using Tree = Bvh2;
     static std::unique_ptr<Bvh2> make(const Bvh&, const Scene&);
 

@@ -3,8 +3,8 @@
 //   * which of them a visit to a node reads, and a test of a triangle: one warp access each;
 //   * how a lane steps: from what it read to where it goes next.
 // What a visit costs is the GPU's business: the front end makes load instructions of an access by the element's bytes,
-// and a preset's node_instructions and triangle_instructions are charged by the role of the region's kind
-// (traces/object_kind.hpp). They hold for nodes of two boxes; Region::degree tells how many the nodes of a trace have.
+// and a preset's instructions are charged by the role of the region's kind (traces/object_kind.hpp) and, of nodes, by
+// Region::degree: how many boxes a visit tests.
 //
 // Two parts. At run time a layout is a BvhLayout, made by its entry in a list of names. The traversal
 // (tracer/simt/warp_traversal.hpp) is a template over the layout's own type, a WalkableBvh, so that its inner loop is
@@ -99,6 +99,7 @@ concept WalkableBvh = std::derived_from<T, BvhLayout> &&
 /// Its name, and how it is made: what a trace's provenance and --layout call it.
 struct BvhLayoutEntry {
     std::string name, description;
+    std::uint32_t max_leaf_size;  ///< triangles of a leaf of the tree that it is made of, at most
     /// Throws Error where the tree is too large or too deep for the layout.
     std::unique_ptr<const BvhLayout> (*make)(const Bvh&, const Scene&);
 };

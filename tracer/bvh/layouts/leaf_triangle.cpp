@@ -2,10 +2,10 @@
 
 namespace raycache::tracer {
 
-std::vector<LeafTriangle> leaf_triangles(const Bvh& bvh, const Scene& scene) {
+std::vector<LeafTriangle> leaf_triangles(std::span<const std::uint32_t> order, const Scene& scene) {
     std::vector<LeafTriangle> triangles;
-    triangles.reserve(bvh.triangles.size());
-    for (const std::uint32_t t : bvh.triangles) {
+    triangles.reserve(order.size());
+    for (const std::uint32_t t : order) {
         const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
         const Vec3 a = scene.positions[index[0]], b = scene.positions[index[1]], c = scene.positions[index[2]];
         const bool holes = scene.materials[scene.material_of[t]].may_have_holes();

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "tracer/bvh/bvh.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/vec.hpp"
 #include "traces/header.hpp"
@@ -24,8 +24,8 @@ struct alignas(16) LeafTriangle {
 };
 static_assert(sizeof(LeafTriangle) == 48);
 
-/// Those of the tree, leaf by leaf.
-std::vector<LeafTriangle> leaf_triangles(const Bvh&, const Scene&);
+/// These triangles of the scene, in this order.
+std::vector<LeafTriangle> leaf_triangles(std::span<const std::uint32_t> order, const Scene&);
 
 /// So many of them as a region of a trace.
 traces::Region leaf_triangle_region(std::size_t count);

@@ -16,7 +16,7 @@ std::unique_ptr<const BvhLayout> make(const Bvh& bvh, const Scene& scene) {
 
 template <class... Layouts>
 std::vector<BvhLayoutEntry> entries_of(LayoutList<Layouts...>) {
-    return {{Layouts::name, Layouts::description, &make<Layouts>}...};
+    return {{Layouts::name, Layouts::description, Layouts::max_leaf_size, &make<Layouts>}...};
 }
 
 }  // namespace
