@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,57 +27,79 @@ public:
     /// `layout`: a name of bvh_layouts(). Throws UsageError for another.
     PreparedScene(Scene scene, const BvhSettings& settings, const std::string& layout = default_layout,
                   BvhSource source = build_bvh)
-        : scene_(with_offset_scale(std::move(scene))),
-          settings_(settings),
-          layout_(bvh_layout_entry(layout)),
-          source_(std::move(source)),
-          lights_(scene_),
-          texels_(scene_) {}
-    PreparedScene(const PreparedScene&) = delete;  // its parts point at each other
+        : PreparedScene(std::make_shared<Shared>(std::move(scene), settings, std::move(source)), layout) {}
+    PreparedScene(const PreparedScene&) = delete;  // captures point at it
     PreparedScene& operator=(const PreparedScene&) = delete;
 
-    const Scene& scene() const { return scene_; }
+    /// The same scene, its BVH in another layout; lives as long as this. Throws UsageError for an unknown name. May be
+    /// called by several threads.
+    const PreparedScene& in_layout(const std::string& layout) const {
+        if (layout == layout_.name) return *this;
+        const std::lock_guard lock(others_mutex_);
+        std::unique_ptr<PreparedScene>& other = others_[layout];
+        if (!other) other.reset(new PreparedScene(shared_, layout));
+        return *other;
+    }
+
+    const Scene& scene() const { return shared_->scene; }
     /// Built when first asked for, as embree() is: a capture needs the one, a render the other. May be called by
     /// several threads.
     const BvhLayout& bvh() const {
         std::call_once(bvh_once_, [this] {
-            scene_.charge(scene_.triangle_count() * bvh_bytes, "BVH of its triangles");
-            BvhSettings settings = settings_;
+            scene().charge(scene().triangle_count() * bvh_bytes, "BVH of its triangles");
+            BvhSettings settings = shared_->settings;
             settings.max_leaf_size = std::min(settings.max_leaf_size, layout_.max_leaf_size);
-            bvh_ = layout_.make(source_(scene_, settings), scene_);
+            bvh_ = layout_.make(shared_->source(scene(), settings), scene());
         });
         return *bvh_;
     }
     const EmbreeScene& embree() const {
-        std::call_once(embree_once_, [this] {
-            scene_.charge(scene_.triangle_count() * embree_bytes, "Embree's BVH of its triangles");
-            embree_.emplace(scene_, texels_);
+        std::call_once(shared_->embree_once, [this] {
+            scene().charge(scene().triangle_count() * embree_bytes, "Embree's BVH of its triangles");
+            shared_->embree.emplace(scene(), texels());
         });
-        return *embree_;
+        return *shared_->embree;
     }
     const std::string& layout() const { return layout_.name; }
-    const Lights& lights() const { return lights_; }
-    const TexelLayout& texels() const { return texels_; }
-    const Camera& camera() const { return scene_.cameras.front(); }
+    const Lights& lights() const { return shared_->lights; }
+    const TexelLayout& texels() const { return shared_->texels; }
+    const Camera& camera() const { return scene().cameras.front(); }
 
 private:
     /// For each triangle, while the tree is built.
     static constexpr std::uint64_t bvh_bytes = 240, embree_bytes = 200;
+
+    /// What does not depend on the layout.
+    struct Shared {
+        Shared(Scene s, const BvhSettings& bvh_settings, BvhSource bvh_source)
+            : scene(with_offset_scale(std::move(s))),
+              settings(bvh_settings),
+              source(std::move(bvh_source)),
+              lights(scene),
+              texels(scene) {}
+        Scene scene;
+        BvhSettings settings;
+        BvhSource source;
+        Lights lights;
+        TexelLayout texels;
+        std::once_flag embree_once;
+        std::optional<EmbreeScene> embree;
+    };
+
+    PreparedScene(std::shared_ptr<Shared> shared, const std::string& layout)
+        : shared_(std::move(shared)), layout_(bvh_layout_entry(layout)) {}
 
     static Scene with_offset_scale(Scene scene) {
         scene.offset_scale = Scene::offset_scale_of(scene.bounds());
         return scene;
     }
 
-    Scene scene_;
-    BvhSettings settings_;
+    std::shared_ptr<Shared> shared_;
     const BvhLayoutEntry& layout_;
-    BvhSource source_;
-    Lights lights_;
-    TexelLayout texels_;
-    mutable std::once_flag bvh_once_, embree_once_;
+    mutable std::once_flag bvh_once_;
     mutable std::unique_ptr<const BvhLayout> bvh_;
-    mutable std::optional<EmbreeScene> embree_;
+    mutable std::mutex others_mutex_;
+    mutable std::map<std::string, std::unique_ptr<PreparedScene>> others_;
 };
 
 }  // namespace raycache::tracer

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tracer/bvh/layouts/layout.hpp"
 #include "tracer/sampling/decorrelation.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
 #include "traces/did_you_mean.hpp"
@@ -36,6 +37,7 @@ void check_part(const StrategyName& name, const char* what, const std::string& f
 
 StrategyName parse_strategy_name(const std::string& text, StrategyParts parts) {
     StrategyName name{text};
+    if (parts.layout) name.layout = cut_after(name.decorrelation, '/');
     if (parts.thread_map) name.thread_map = cut_after(name.decorrelation, '@');
     if (parts.order) name.order = cut_after(name.decorrelation, '+');
     return name;
@@ -45,6 +47,7 @@ std::string to_string(const StrategyName& name) {
     std::string text = name.decorrelation;
     if (name.order) text += '+' + *name.order;
     if (name.thread_map) text += '@' + *name.thread_map;
+    if (name.layout) text += '/' + *name.layout;
     return text;
 }
 
@@ -61,11 +64,17 @@ void check_strategy_name(const StrategyName& name) {
         for (const auto& entry : thread_maps()) maps.push_back(entry.name);
         check_part(name, "thread map", *name.thread_map, maps);
     }
+    if (name.layout) {
+        std::vector<std::string> layouts;
+        for (const auto& entry : bvh_layouts()) layouts.push_back(entry.name);
+        check_part(name, "layout", *name.layout, layouts);
+    }
 }
 
 StrategyName strategy_name(const traces::Provenance& p) {
     StrategyName name{p.decorrelation};
     if (p.execution != traces::Provenance{}.execution) name.order = p.order == "none" ? p.execution : p.order;
+    if (p.layout != default_layout) name.layout = p.layout;
     return name;
 }
 

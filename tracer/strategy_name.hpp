@@ -1,9 +1,10 @@
-// The name of a strategy as a user types it and a table prints it: NAME[+ORDER][@MAP].
+// The name of a strategy as a user types it and a table prints it: NAME[+ORDER][@MAP][/LAYOUT].
 //   NAME    the decorrelation: "micro-jitter"
 //   +ORDER  it runs as a wavefront whose rays are sorted so: "micro-jitter+morton"; +wavefront: not sorted
 //   @MAP    the thread map: "owen@samples", "micro-jitter+morton@tile"
+//   /LAYOUT the BVH lies in memory so: "micro-jitter/cwbvh8"
 // What a name does not say, the job's other settings say. Which names there are, the registries know: decorrelations(),
-// ray_orders(), thread_maps().
+// ray_orders(), thread_maps(), bvh_layouts().
 #pragma once
 
 #include <optional>
@@ -15,15 +16,16 @@
 
 namespace raycache::tracer {
 
-/// Which parts a name may have. '+' or '@' of one that it may not have is a letter of NAME, and so unknown.
+/// Which parts a name may have. '+', '@' or '/' of one that it may not have is a letter of NAME, and so unknown.
 struct StrategyParts {
-    bool order = true, thread_map = true;
+    bool order = true, thread_map = true, layout = true;
 };
 
 struct StrategyName {
     std::string decorrelation = "micro-jitter";
     std::optional<std::string> order = {};       ///< of ray_orders(), or "wavefront"
     std::optional<std::string> thread_map = {};  ///< of thread_maps()
+    std::optional<std::string> layout = {};      ///< of bvh_layouts()
 
     bool operator==(const StrategyName&) const = default;
 };
@@ -35,7 +37,8 @@ std::string to_string(const StrategyName&);
 /// Throws UsageError for a part that no registry has, with the valid ones and the closest of them.
 void check_strategy_name(const StrategyName&);
 
-/// Of a trace: what tables call it. A trace's thread map is a column of its own, no part of its name.
+/// Of a trace: what tables call it. Its thread map is a column of its own, no part of its name; its layout is, unless it is
+/// the default.
 StrategyName strategy_name(const traces::Provenance&);
 
 /// A wavefront in the name's order, else `otherwise`.

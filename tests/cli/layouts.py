@@ -38,6 +38,33 @@ class Layouts(ProgramTest):
         self.assertEqual(fused["rows"][0]["totals"], rows[1])
         self.assertEqual(fused["traces"][0]["layout"], OTHER)
 
+    def test_layouts_side_by_side_are_rows_of_each_strategy_held_against_the_baseline_in_the_first(self):
+        both = ["--spp", "64", "--strategy", "cranley-patterson,micro-jitter", "--layout", "bvh2,bvh4,cwbvh8"]
+        fused = self.succeeds("compare", *SCENE, *LAUNCHES, *both, *GPU, "--json").json
+        names = [s + layout for s in ("cranley-patterson", "micro-jitter") for layout in ("", "/bvh4", "/cwbvh8")]
+        self.assertEqual([row["strategy"] for row in fused["rows"]], names)
+        self.assertEqual(fused["baseline"], "cranley-patterson")
+        self.assertEqual([trace["layout"] for trace in fused["traces"]], ["bvh2", "bvh4", "cwbvh8"] * 2)
+        totals = {row["strategy"]: row["totals"] for row in fused["rows"]}
+        for name in names:  # the same paths, in fewer and larger steps
+            self.assertEqual(totals[name]["rays"], totals[name.split("/")[0]]["rays"])
+        steps = [totals["micro-jitter" + layout]["steps"] for layout in ("", "/bvh4", "/cwbvh8")]
+        self.assertEqual(sorted(steps, reverse=True), steps)
+        self.assertLess(steps[2], 0.6 * steps[0])
+        trace = self.capture("wide.rct", "--layout", "cwbvh8", "--strategy", "micro-jitter")
+        self.assertEqual(self.succeeds("replay", trace, *GPU, "--json").json["rows"][0]["totals"], totals["micro-jitter/cwbvh8"])
+        one = self.succeeds("compare", *SCENE, *LAUNCHES, *both, "--baseline", "micro-jitter/cwbvh8", *GPU, "--json").json
+        self.assertEqual(one["baseline"], "micro-jitter/cwbvh8")
+        self.assertTrue(all("l2_bytes_ratio" in row for row in one["rows"] if row["strategy"] != one["baseline"]))
+
+    def test_one_strategy_in_several_layouts_is_held_against_the_first(self):
+        rows = self.succeeds("compare", *SCENE, *LAUNCHES, "--spp", "64", "--strategy", "micro-jitter/bvh4,micro-jitter/cwbvh8",
+                             *GPU, "--json").json
+        self.assertEqual(rows["baseline"], "micro-jitter/bvh4")
+        text = self.succeeds("explain", *SCENE, *LAUNCHES, "--spp", "64", "--strategy", "micro-jitter/bvh2,micro-jitter/cwbvh8",
+                             *GPU).text
+        self.assertIn("micro-jitter/cwbvh8", text)
+
     def test_an_explanation_straight_from_a_scene_takes_a_layout(self):
         text = self.succeeds("explain", *SCENE, *LAUNCHES, "--spp", "64", "--layout", OTHER, *GPU, "--counts-only",
                              "--json").json

@@ -1,5 +1,6 @@
 // The traversal against Embree's robust mode on whole scenes, with a judge in double arithmetic for the differences.
 #include <catch2/catch.hpp>
+#include <span>
 
 #include "embree_comparison.hpp"
 #include "path_rays.hpp"
@@ -38,6 +39,23 @@ void check(const Comparison& result, double share) {
     CHECK(static_cast<double>(result.excused) <= share * static_cast<double>(result.rays));
 }
 
+/// In layouts of other nodes hits must be those of bvh2 bit by bit.
+void check_wide(const PreparedScene& bvh2, std::span<const Ray> closest, std::span<const Ray> any) {
+    const std::vector<Hit> hits = closest_hits(bvh2, closest);
+    const std::vector<bool> occluded = any_hits(bvh2, any);
+    for (const char* layout : {"bvh4", "cwbvh8"}) {
+        INFO(layout);
+        const PreparedScene& wide = bvh2.in_layout(layout);
+        const std::vector<Hit> found = closest_hits(wide, closest);
+        std::size_t differ = 0;
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            differ += found[i].triangle != hits[i].triangle || found[i].t != hits[i].t || found[i].u != hits[i].u ||
+                      found[i].v != hits[i].v;
+        CHECK(differ == 0);
+        CHECK(any_hits(wide, any) == occluded);
+    }
+}
+
 /// A million rays: those of paths, random ones, and some aimed at edges.
 void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
     const PreparedScene prepared(opaque(std::move(scene)), settings);
@@ -54,11 +72,14 @@ void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
     found += compare_closest(prepared, embree, random_segments(box, others, 2));
     found += compare_any(prepared, embree, random_segments(box, others, 3));
     check(found, excused_share);
+    check_wide(prepared, collector.closest_rays, collector.shadow_rays);
+    check_wide(prepared, random_segments(box, others, 2), random_segments(box, others, 3));
 
     const auto at_edges = aimed_rays(prepared.scene(), box, others, 4);
     Comparison aimed = compare_closest(prepared, embree, at_edges);
     aimed += compare_any(prepared, embree, at_edges);
     check(aimed, excused_aimed_share);
+    check_wide(prepared, at_edges, at_edges);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Names of strategies: NAME[+ORDER][@MAP], taken apart, checked and put together.
+// Names of strategies: NAME[+ORDER][@MAP][/LAYOUT], taken apart, checked and put together.
 #include "tracer/strategy_name.hpp"
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-TEST_CASE("A strategy's name is a decorrelation, an order and a thread map, and prints as it was typed") {
+TEST_CASE("A strategy's name is a decorrelation, an order, a thread map and a layout, and prints as it was typed") {
     const auto [text, name] = GENERATE(table<std::string, StrategyName>({
         {"owen", {"owen"}},
         {"micro-jitter+morton", {"micro-jitter", "morton"}},
@@ -20,6 +20,9 @@ TEST_CASE("A strategy's name is a decorrelation, an order and a thread map, and 
         {"", {""}},
         {"+@", {"", "", ""}},
         {"a@b+c", {"a", {}, "b+c"}},
+        {"owen/cwbvh8", {"owen", {}, {}, "cwbvh8"}},
+        {"owen+morton@tile/bvh2", {"owen", "morton", "tile", "bvh2"}},
+        {"a/b@c", {"a", {}, {}, "b@c"}},
     }));
     CHECK(parse_strategy_name(text) == name);
     CHECK(to_string(name) == text);
@@ -29,6 +32,7 @@ TEST_CASE("A part that a name may not have is a letter of its decorrelation") {
     CHECK(parse_strategy_name("owen+morton@tile", {false, false}) == StrategyName{"owen+morton@tile"});
     CHECK(parse_strategy_name("owen+morton@tile", {false, true}) == StrategyName{"owen+morton", {}, "tile"});
     CHECK(parse_strategy_name("owen+morton@tile", {true, false}) == StrategyName{"owen", "morton@tile"});
+    CHECK(parse_strategy_name("owen/bvh4", {true, true, false}) == StrategyName{"owen/bvh4"});
 }
 
 TEST_CASE("A part of a name that no registry has is refused with the closest one") {
@@ -40,12 +44,14 @@ TEST_CASE("A part of a name that no registry has is refused with the closest one
             return std::string(e.what());
         }
     };
-    for (const char* valid : {"owen", "owen+none", "owen+wavefront", "owen@classes", "owen+morton@samples"})
+    for (const char* valid :
+         {"owen", "owen+none", "owen+wavefront", "owen@classes", "owen+morton@samples", "owen@tile/cwbvh8"})
         CHECK(refusal(valid) == "");
     CHECK_THAT(refusal("oven+morton"), Contains("unknown strategy 'oven'") && Contains("did you mean 'owen'?"));
     CHECK_THAT(refusal("owen+mortn@tile"),
                Contains("strategy 'owen+mortn@tile': unknown ray order 'mortn'") && Contains("did you mean 'morton'?"));
     CHECK_THAT(refusal("owen@sample"), Contains("unknown thread map 'sample'") && Contains("did you mean 'samples'?"));
+    CHECK_THAT(refusal("owen/cwbvh"), Contains("unknown layout 'cwbvh'") && Contains("did you mean 'cwbvh8'?"));
     CHECK_THAT(refusal("owen+"), Contains("unknown ray order ''"));
     CHECK_THAT(refusal("owen@"), Contains("unknown thread map ''"));
     CHECK_THAT(refusal(""), Contains("unknown strategy ''"));
@@ -65,14 +71,21 @@ TEST_CASE("What a name does not say, the other settings say") {
     CHECK_THROWS_AS(thread_map_of({"owen", {}, "tiles"}, ""), UsageError);
 }
 
-TEST_CASE("A trace's strategy is named after its decorrelation and, of a wavefront, its order") {
+TEST_CASE(
+    "A trace's strategy is named after its decorrelation, of a wavefront its order, and a layout unless it is the "
+    "default") {
     traces::Provenance p;
     p.decorrelation = "owen";
+    p.layout = "bvh2";
     CHECK(to_string(strategy_name(p)) == "owen");
     p.execution = "wavefront";
     CHECK(to_string(strategy_name(p)) == "owen+wavefront");
     p.order = "morton";
     CHECK(to_string(strategy_name(p)) == "owen+morton");
+    p.layout = "bvh2";
+    CHECK(to_string(strategy_name(p)) == "owen+morton");
+    p.layout = "cwbvh8";
+    CHECK(to_string(strategy_name(p)) == "owen+morton/cwbvh8");
 }
 
 }  // namespace

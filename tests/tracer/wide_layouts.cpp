@@ -214,7 +214,7 @@ TEST_CASE("cwbvh8: a quantised box holds the child's, whatever its size and plac
             if (random.below(5) == 0) continue;
             for (int corner = 0; corner < 2; ++corner) {
                 const float flat = random.below(4) == 0 ? 0.0F : extent;
-                box.add({centre[0] + extent * random.unit(), centre[1] + flat * random.unit(),
+                box.add(Vec3{centre[0] + extent * random.unit(), centre[1] + flat * random.unit(),
                          centre[2] + extent * random.unit() * 1e-3F});
             }
             whole.add(box);

@@ -5,16 +5,29 @@
 #include <string>
 #include <vector>
 
+#include "tracer/bvh/layouts/layout.hpp"
+#include "tracer/strategy_name.hpp"
+
 namespace raycache::tools {
 
-/// Not asked for: the usual baseline, where it is among the strategies and there is something to hold against it.
+/// Not asked for: cranley-patterson, where it is among the strategies and there is something to hold against it; of one
+/// strategy in several layouts the first. A default layout that is asked for by its name is no part of a series' name.
 template <class Series>
 std::string baseline_of(const std::vector<Series>& series, const std::string& asked) {
-    const std::string usual = "cranley-patterson";
-    const auto is_usual = [&](const Series& s) { return s.strategy == usual; };
-    const bool has_usual =
-        std::any_of(series.begin(), series.end(), is_usual) && !std::all_of(series.begin(), series.end(), is_usual);
-    return asked.empty() && has_usual ? usual : asked;
+    if (!asked.empty()) {
+        tracer::StrategyName name = tracer::parse_strategy_name(asked);
+        if (name.layout == tracer::default_layout) name.layout.reset();
+        return to_string(name);
+    }
+    const auto without_layout = [](const Series& s) { return s.strategy.substr(0, s.strategy.find('/')); };
+    const auto is_usual = [&](const Series& s) { return without_layout(s) == "cranley-patterson"; };
+    const auto is_first = [&](const Series& s) { return without_layout(s) == without_layout(series.front()); };
+    const auto usual = std::find_if(series.begin(), series.end(), is_usual);
+    const auto found =
+        usual == series.end() && std::all_of(series.begin(), series.end(), is_first) ? series.begin() : usual;
+    const auto is_found = [&](const Series& s) { return s.strategy == found->strategy; };
+    return found == series.end() || std::all_of(series.begin(), series.end(), is_found) ? std::string()
+                                                                                        : found->strategy;
 }
 
 }  // namespace raycache::tools

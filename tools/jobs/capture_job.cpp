@@ -15,7 +15,7 @@ CaptureResult run(const CaptureJob& job, Observer& observer) {
     check_outputs({job.output}, observer.warning());
     observer.resumable("a capture cannot go on where it ended: run the same command again");
     observer.expect("trace", Work::trace, trace_cost(settings));
-    const auto scene = job.scene.prepare({job.output}, observer);
+    const auto scene = of_case(job.scene, job.strategy).prepare({job.output}, observer);
     const tracer::Capture capture(*scene, settings);
     const traces::Header& header = capture.header();
     CaptureResult result;

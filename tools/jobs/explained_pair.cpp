@@ -61,7 +61,6 @@ std::array<std::string, 2> names_of(const ExplainedPair& pair) {
     if (a.decorrelation == b.decorrelation) add(a.parameters, b.parameters);
     add(a.sequence, b.sequence);
     add(fmt::format("N={}", a.spp), fmt::format("N={}", b.spp));
-    add(a.layout, b.layout);
     if (names[0].empty() || names[1].empty()) return {"base", "other"};
     return {printable_line(names[0]), printable_line(names[1])};
 }

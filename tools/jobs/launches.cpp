@@ -36,7 +36,9 @@ Launches::Launches(const LaunchSettings& settings, const FileNames& outputs, Obs
     const auto captures = settings.captures();
     warn_of_strategies(captures, observer);
     scene_ = settings.scene.prepare(outputs, observer);
-    for (const auto& c : captures) captures_.push_back(std::make_unique<tracer::Capture>(*scene_, c));
+    for (std::size_t i = 0; i < captures.size(); ++i)
+        captures_.push_back(std::make_unique<tracer::Capture>(
+            scene_->in_layout(of_case(settings.scene, settings.cases[i]).layout), captures[i]));
     sources_ = sources_of(captures_);
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         const tracer::StrategyName& given = settings.cases[i].strategy;

@@ -124,6 +124,11 @@ SamplingSettings of_case(SamplingSettings sampling, const CaseSettings& one) {
     return sampling;
 }
 
+SceneSettings of_case(SceneSettings scene, const CaseSettings& one) {
+    scene.layout = one.strategy.layout.value_or(scene.layout);
+    return scene;
+}
+
 tracer::CaptureSettings capture_settings(const SceneSettings& scene, const SamplingSettings& common,
                                          const CaseSettings& one) {
     const SamplingSettings sampling = of_case(common, one);
@@ -145,8 +150,8 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     settings.command = fmt::format(
         "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{} --bounces {}{} "
         "--thread-map {}{} --seed {}{}",
-        scene.command(), decorrelation, one.sequence, one.spp, std::min(sampling.trace_samples, one.spp), size.width,
-        size.height, sampling.bounces, path_command(sampling), tracer::to_string(settings.thread_map),
+        of_case(scene, one).command(), decorrelation, one.sequence, one.spp, std::min(sampling.trace_samples, one.spp),
+        size.width, size.height, sampling.bounces, path_command(sampling), tracer::to_string(settings.thread_map),
         parameter_command(settings), sampling.seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;

@@ -49,6 +49,8 @@ struct CaseSettings {
     std::string k, mu;       ///< instead of SamplingSettings'; empty: those
 };
 
+/// The scene, in the case's layout where it names one.
+SceneSettings of_case(SceneSettings, const CaseSettings&);
 /// What all cases have in common, with what this one has instead.
 SamplingSettings of_case(SamplingSettings, const CaseSettings&);
 

@@ -24,27 +24,33 @@ struct CompareArguments {
     std::vector<std::string> sequences{"sobol"};
     std::vector<std::uint64_t> spp{64};
     std::vector<std::string> ks{""};  ///< empty: that of `sampling`
+    std::vector<std::string> layouts{tracer::default_layout};
     SamplingOptions sampling;
     EstimateOptions estimate;
     ReportOptions report;
     ThreadOptions threads;
 };
 
-/// One for each sequence, N, strategy and K; a strategy without K once.
+/// One for each sequence, N, strategy, K and layout; a strategy without K once, one that names a layout in that alone.
 std::vector<CaseSettings> cases_of(const CompareArguments& o) {
     std::vector<CaseSettings> all;
     std::set<std::string> seen;
     for (const std::string& sequence : o.sequences)
         for (const std::uint64_t spp : o.spp)
             for (const std::string& strategy : o.strategies)
-                for (const std::string& k : o.ks) {
-                    const CaseSettings one{tracer::parse_strategy_name(strategy), sequence, spp, k, {}};
-                    const auto settings = capture_settings(o.scene, o.sampling, one);
-                    const tracer::SamplingStrategy made(settings.strategy, tracer::sample_dimensions(settings.paths));
-                    if (o.ks.size() == 1 ||
-                        seen.insert(fmt::format("{} {} {} {}", sequence, spp, strategy, made.parameters())).second)
-                        all.push_back(one);
-                }
+                for (const std::string& k : o.ks)
+                    for (const std::string& layout : o.layouts) {
+                        CaseSettings one{tracer::parse_strategy_name(strategy), sequence, spp, k, {}};
+                        if (!one.strategy.layout && layout != tracer::default_layout) one.strategy.layout = layout;
+                        const auto settings = capture_settings(o.scene, o.sampling, one);
+                        const tracer::SamplingStrategy made(settings.strategy,
+                                                            tracer::sample_dimensions(settings.paths));
+                        if ((o.ks.size() == 1 && o.layouts.size() == 1) ||
+                            seen.insert(fmt::format("{} {} {} {}", sequence, spp, to_string(one.strategy),
+                                                    made.parameters()))
+                                .second)
+                            all.push_back(one);
+                    }
     return all;
 }
 
@@ -95,6 +101,9 @@ void add_compare(Program& program) {
     o->sampling.add_picture(*command);
     o->sampling.add_strategy(*command);
     command->remove_option("--k");  // of one strategy; here it is a list
+    command->remove_option("--layout");
+    command->group("Scene", true);
+    add_layouts(*command, o->layouts);
     command->group("Sampling", true);
     command
         ->add_option("--k", o->ks,
@@ -111,7 +120,9 @@ void add_compare(Program& program) {
          "raycache compare sponza.glb --sequence sobol,halton --gpu h100 --by bounce --csv",
          "raycache compare courtyard --strategy cranley-patterson,cranley-patterson+wavefront,"
          "cranley-patterson+meister,micro-jitter --gpu h100",
-         "raycache compare courtyard --strategy cranley-patterson,cranley-patterson@classes,interleaved --gpu h100"});
+         "raycache compare courtyard --strategy cranley-patterson,cranley-patterson@classes,interleaved --gpu h100",
+         "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --layout bvh2,cwbvh8 --spp 1024 "
+         "--gpu rtx-3070 --timed"});
     command->plan([o, command] { return plan(o, command); });
 }
 

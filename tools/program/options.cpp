@@ -45,6 +45,7 @@ Option* add_strategies(Command& command, std::vector<std::string>& strategies, t
     if (parts.order)
         help += "; NAME+wavefront or NAME+ORDER runs one as a wavefront, without sorting or with its rays sorted so";
     if (parts.thread_map) help += "; NAME@MAP has a thread map of its own";
+    if (parts.layout) help += "; NAME/LAYOUT walks a BVH in a layout of its own";
     return command.add_option("--strategy", strategies, help)->check(strategy_name_check(parts))->about_scene();
 }
 
@@ -61,6 +62,15 @@ Option* add_spps(Command& command, std::vector<std::uint64_t>& spp, const std::s
 
 Option* add_spp(Command& command, std::uint64_t& spp, const std::string& help) {
     return command.add_option("--spp", spp, help)->range(std::uint64_t{1}, most_samples);
+}
+
+Option* add_layouts(Command& command, std::vector<std::string>& layouts) {
+    return command
+        .add_option(
+            "--layout", layouts,
+            "how the BVH lies in memory (see 'raycache list layouts'); several, separated by commas, make a row "
+            "of each strategy each")
+        ->choices("layout", names_of(tracer::bvh_layouts()));
 }
 
 void SceneOptions::add_name(Command& command) {

@@ -46,6 +46,8 @@ std::function<void(std::string&)> strategy_name_check(tracer::StrategyParts = {}
 /// --strategy, --sequence and --spp where there may be several.
 Option* add_strategies(Command&, std::vector<std::string>&, tracer::StrategyParts);
 Option* add_sequences(Command&, std::vector<std::string>&);
+/// A list of layouts, instead of the one of SceneOptions::add_view().
+Option* add_layouts(Command&, std::vector<std::string>&);
 Option* add_spps(Command&, std::vector<std::uint64_t>&, const std::string& help);
 /// --spp where there is one.
 Option* add_spp(Command&, std::uint64_t&, const std::string& help);

@@ -36,7 +36,7 @@ Estimator::Case make_case(const tracer::PreparedScene& scene, const WindowedStra
     for (const std::uint32_t first : c.first)
         for (std::uint32_t launch = 0; launch < c.plan.launches(); ++launch)
             settings.first_indices.push_back(first + launch * grid.samples_per_launch());
-    c.capture = std::make_unique<tracer::Capture>(scene, settings);
+    c.capture = std::make_unique<tracer::Capture>(scene.in_layout(strategy.layout), settings);
     tracer::StrategyName name = tracer::strategy_name(c.capture->header().provenance);
     name.thread_map = strategy.thread_map;
     c.name = to_string(name);
@@ -51,7 +51,8 @@ std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
     std::vector<WindowedStrategy> all;
     const auto captures = launches.captures();
     for (std::size_t i = 0; i < captures.size(); ++i)
-        all.push_back({captures[i], launches.cases[i].strategy.thread_map});
+        all.push_back({captures[i], launches.cases[i].strategy.thread_map,
+                       of_case(launches.scene, launches.cases[i]).layout});
     return all;
 }
 

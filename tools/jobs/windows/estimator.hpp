@@ -20,6 +20,7 @@ namespace raycache::tools {
 struct WindowedStrategy {
     tracer::CaptureSettings capture;
     std::optional<std::string> thread_map;  ///< as the user named it, for tables
+    std::string layout = tracer::default_layout;
 };
 std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
 
