@@ -215,7 +215,7 @@ TEST_CASE("cwbvh8: a quantised box holds the child's, whatever its size and plac
             for (int corner = 0; corner < 2; ++corner) {
                 const float flat = random.below(4) == 0 ? 0.0F : extent;
                 box.add(Vec3{centre[0] + extent * random.unit(), centre[1] + flat * random.unit(),
-                         centre[2] + extent * random.unit() * 1e-3F});
+                             centre[2] + extent * random.unit() * 1e-3F});
             }
             whole.add(box);
         }
@@ -237,6 +237,22 @@ TEST_CASE("cwbvh8: a quantised box holds the child's, whatever its size and plac
     }
     CHECK(all > 100000);
     CHECK(tight == all);
+}
+
+TEST_CASE("cwbvh8: a plane so near to a step that doubles do not tell them apart takes the step on its outer side") {
+    std::array<Box, 8> boxes;
+    const float hair = 1e-30F;
+    boxes[0] = {{-1, -1, -1}, {hair, hair, hair}};
+    boxes[5] = {{-hair, -hair, -hair}, {1, 1, 1}};
+    Cwbvh8Node node{};
+    quantise({{-1, -1, -1}, {1, 1, 1}}, boxes, node);
+    for (int axis = 0; axis < 3; ++axis) {
+        CHECK(node.scale(axis) == 1.0F / 64);
+        CHECK(node.upper[axis][0] == 65);
+        CHECK(node.lower[axis][5] == 63);
+    }
+    CHECK(contains(node.box(0), boxes[0]));
+    CHECK(contains(node.box(5), boxes[5]));
 }
 
 TEST_CASE("cwbvh8: children lie in the slots of their octants, and a node says where they are") {
