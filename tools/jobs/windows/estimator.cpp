@@ -51,8 +51,8 @@ std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
     std::vector<WindowedStrategy> all;
     const auto captures = launches.captures();
     for (std::size_t i = 0; i < captures.size(); ++i)
-        all.push_back({captures[i], launches.cases[i].strategy.thread_map,
-                       of_case(launches.scene, launches.cases[i]).layout});
+        all.push_back(
+            {captures[i], launches.cases[i].strategy.thread_map, of_case(launches.scene, launches.cases[i]).layout});
     return all;
 }
 
