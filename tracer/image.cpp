@@ -32,8 +32,8 @@ bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 [[noreturn]] void fail_to_decode(const std::string& name, const std::string& why) {
-    throw Error(fmt::format("{}: expected a whole PNG or JPEG image, found a damaged one ({}); export it again", name,
-                            first_line(why)));
+    throw Error(fmt::format("{}: expected a whole PNG, JPEG or WebP image, found a damaged one ({}); export it again",
+                            name, first_line(why)));
 }
 
 struct TextureLayout {
@@ -44,11 +44,12 @@ struct TextureLayout {
 /// From the header, found acceptable.
 TextureLayout texture_layout(std::span<const std::uint8_t> bytes, const std::string& name) {
     const bool png = starts_with(bytes, "\x89PNG\r\n\x1A\n"), jpeg = starts_with(bytes, "\xFF\xD8\xFF");
-    if (!png && !jpeg)
-        throw Error(fmt::format("{}: expected a PNG or JPEG image, found {} bytes of something else; convert it", name,
-                                bytes.size()));
+    const bool webp = starts_with(bytes, "RIFF") && bytes.size() > 12 && starts_with(bytes.subspan(8), "WEBP");
+    if (!png && !jpeg && !webp)
+        throw Error(fmt::format("{}: expected a PNG, JPEG or WebP image, found {} bytes of something else; convert it",
+                                name, bytes.size()));
     if (png && !is_whole_png(bytes)) fail_to_decode(name, "a chunk is cut short or has a wrong checksum");
-    TextureLayout found{png ? ImageFormat::png : ImageFormat::jpeg, {}};
+    TextureLayout found{png ? ImageFormat::png : jpeg ? ImageFormat::jpeg : ImageFormat::webp, {}};
     const std::string problem = image_codec().read_layout(bytes, found.format, found.layout);
     if (!problem.empty()) fail_to_decode(name, problem);
     const auto [width, height, channels] = std::tie(found.layout.width, found.layout.height, found.layout.channels);

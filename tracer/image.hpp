@@ -20,7 +20,7 @@ struct Texture {
     std::string name;                ///< for messages
 };
 
-/// Decodes a PNG or JPEG file held in memory. Grey becomes RGB, missing alpha 255. Throws Error naming `name`.
+/// Decodes a PNG, JPEG or WebP file held in memory. Grey becomes RGB, missing alpha 255. Throws Error naming `name`.
 Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& name);
 
 struct ImageSize {

@@ -11,7 +11,7 @@
 
 namespace raycache::tracer {
 
-enum class ImageFormat { png, jpeg, exr, hdr };
+enum class ImageFormat { png, jpeg, webp, exr, hdr };
 
 struct ImageLayout {
     int width = 0, height = 0, channels = 0;

@@ -62,8 +62,8 @@ class BadScenes(ProgramTest):
         self.path("gone.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
         self.warns("render", "buffer.gltf", "--resolution", "16x16", "--spp", "1", "-o", "picture.png")
         self.path("picture.png").unlink()
-        self.path("draco.gltf").write_text(scene % ',"extensionsRequired":["KHR_draco_mesh_compression"]')
-        self.refuse_scene("draco.gltf")
+        self.path("shapes.gltf").write_text(scene % ',"extensionsRequired":["ACME_shapes"]')
+        self.refuse_scene("shapes.gltf")
 
 
 class BadTraces(ProgramTest):

@@ -43,8 +43,6 @@ TEST_CASE("buffer views that reach beyond their buffer are errors") {
     SECTION("length") { view["byteLength"] = 1000; }
     SECTION("offset") { view["byteOffset"] = 1000; }
     SECTION("sum that would wrap") { view["byteOffset"] = 0xFFFFFFFFFFFFFFFCULL; }
-    SECTION("buffer") { view["buffer"] = 3; }
-    SECTION("negative buffer") { view["buffer"] = -1; }
     check_error(builder, "buffer view 0: expected");
 }
 
@@ -160,7 +158,7 @@ TEST_CASE("node hierarchies with cycles, shared children or bad references are e
     }
     SECTION("matrix of nine numbers") {
         builder.doc["nodes"][0]["matrix"] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-        part = "expected 16 numbers, found 9";
+        part = "nodes[0].matrix: expected 16 numbers, found [1";
     }
     SECTION("rotation of zero length") {
         builder.doc["nodes"][0]["rotation"] = {0, 0, 0, 0};

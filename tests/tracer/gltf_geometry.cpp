@@ -165,13 +165,71 @@ TEST_CASE("quantised positions need no float") {
     builder.place({{"attributes", {{"POSITION", positions}}}});
     const auto [scene, warnings] = load(builder);
     CHECK(scene.positions == std::vector<Vec3>{{0, 0, 0}, {-7, 0, 0}, {0, 9, 0}});
-    CHECK(warnings.empty());
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].find("1 triangles show a camera the back of an open, single-sided mesh") != std::string::npos);
 }
 
 TEST_CASE("triangles of no area are kept") {
     GltfBuilder builder;
     builder.place({{"attributes", {{"POSITION", builder.floats({1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3")}}}});
-    CHECK(load(builder).scene.triangle_count() == 1);
+    CHECK(error_of(builder).find("expected at least one triangle with an area, found 1 whose corners lie in a line") !=
+          std::string::npos);
+    builder.place_triangle();
+    CHECK(load(builder).scene.triangle_count() == 2);
+}
+
+TEST_CASE("backs of open single-sided meshes that a camera sees are counted; closed and double-sided ones are not") {
+    const auto warnings = [](bool back, bool double_sided, bool closed) {
+        GltfBuilder builder;
+        builder.add("materials", {{"doubleSided", double_sided}});
+        std::vector<std::uint16_t> corners{0, 1, 2};
+        if (back) corners = {0, 2, 1};
+        if (closed) corners = {0, 1, 2, 0, 2, 1};
+        builder.place({{"attributes", {{"POSITION", builder.triangle_positions()}}},
+                       {"indices", builder.accessor(corners, "SCALAR", 5123)},
+                       {"material", 0}});
+        return load(builder).warnings;
+    };
+    CHECK(warnings(false, false, false).empty());
+    CHECK(warnings(true, true, false).empty());
+    CHECK(warnings(true, false, true).empty());
+    REQUIRE(warnings(true, false, false).size() == 1);
+    CHECK(warnings(true, false, false)[0].find("1 triangles show a camera the back") != std::string::npos);
+}
+
+TEST_CASE("corners that make no whole triangle are left out with a warning") {
+    for (const auto& [mode, count, triangles] : {std::tuple{4, 5, 1}, std::tuple{4, 3, 1}, std::tuple{5, 2, 0},
+                                                 std::tuple{6, 2, 0}, std::tuple{5, 4, 2}, std::tuple{4, 2, 0}}) {
+        GltfBuilder builder;
+        std::vector<std::uint16_t> corners{0, 1, 2, 0, 1};
+        corners.resize(static_cast<std::size_t>(count));
+        builder.place({{"attributes", {{"POSITION", builder.triangle_positions()}}},
+                       {"indices", builder.accessor(corners, "SCALAR", 5123)},
+                       {"mode", mode}});
+        builder.place_triangle();
+        const auto [scene, warnings] = load(builder);
+        CHECK(scene.triangle_count() == static_cast<std::size_t>(triangles) + 1);
+        const int spare = mode == 4 ? count % 3 : count < 3 ? count : 0;
+        CHECK(warnings.size() == (spare == 0 ? 0U : 1U));
+        if (spare > 0)
+            CHECK(warnings[0].find(std::to_string(spare) + " indices or vertices at the end of primitives") !=
+                  std::string::npos);
+    }
+}
+
+TEST_CASE("indices may come from sparse values alone, without a buffer view") {
+    GltfBuilder builder;
+    const std::vector<std::uint8_t> where{1, 2};
+    const std::vector<std::uint16_t> what{1, 2};
+    json sparse = {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}};
+    sparse["sparse"] = {{"count", 2},
+                        {"indices", {{"bufferView", builder.view(where.data(), 2)}, {"componentType", 5121}}},
+                        {"values", {{"bufferView", builder.view(what.data(), 4)}}}};
+    builder.place(
+        {{"attributes", {{"POSITION", builder.triangle_positions()}}}, {"indices", builder.add("accessors", sparse)}});
+    const auto [scene, warnings] = load(builder);
+    CHECK(warnings.empty());
+    CHECK(corner(scene, 0, 2) == Vec3{0, 1, 0});
 }
 
 TEST_CASE("triangles with a vertex that is not finite are skipped with one warning that counts them") {

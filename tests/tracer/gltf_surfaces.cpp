@@ -109,29 +109,34 @@ TEST_CASE("surface factors that are no numbers are errors that name them") {
     json material;
     std::string name;
     SECTION("transmission") {
-        material = glass({{"transmissionFactor", "much"}}, nullptr, nullptr), name = "transmissionFactor";
+        material = glass({{"transmissionFactor", "much"}}, nullptr, nullptr);
+        name = "KHR_materials_transmission.transmissionFactor";
     }
-    SECTION("index") { material = glass(nullptr, {{"ior", {1.5}}}, nullptr), name = "ior"; }
+    SECTION("index") { material = glass(nullptr, {{"ior", {1.5}}}, nullptr), name = "KHR_materials_ior.ior"; }
     SECTION("thickness") {
-        material = glass(nullptr, nullptr, {{"thicknessFactor", {{"metres", 1}}}}), name = "thicknessFactor";
+        material = glass(nullptr, nullptr, {{"thicknessFactor", {{"metres", 1}}}});
+        name = "KHR_materials_volume.thicknessFactor";
     }
     const std::string message = error_of(with_material(material));
     INFO(message);
-    CHECK(message.find("material 0 " + name + ": expected a number") != std::string::npos);
+    CHECK(message.find("materials[0].extensions." + name + ": expected a number") != std::string::npos);
     CHECK(message.find('\n') == std::string::npos);
 }
 
-TEST_CASE("a metallic-roughness texture is kept where it has the base colour's coordinates") {
+TEST_CASE("a metallic-roughness texture has the base colour's coordinates or a layer of its own") {
     const std::string uri = "data:image/png;base64," + base64(png_rgb);
     const auto [scene, warnings] = load(two_textures(0, 0, uri));
     CHECK(warnings.empty());
     CHECK(scene.textures.size() == 2);
     CHECK(scene.materials[0].base_color_texture == 0);
     CHECK(scene.materials[0].metallic_roughness_texture == 1);
+    CHECK(scene.more_texcoords.empty());
     const auto other = load(two_textures(0, 1, uri));
-    CHECK(other.scene.materials[0].metallic_roughness_texture == -1);
-    REQUIRE(other.warnings.size() == 1);
-    CHECK(other.warnings[0].find("1 materials have a metallic-roughness texture") != std::string::npos);
+    CHECK(other.warnings.empty());
+    CHECK(other.scene.materials[0].metallic_roughness_texture == 1);
+    CHECK(other.scene.materials[0].metallic_roughness_lookup.layer == 1);
+    REQUIRE(other.scene.more_texcoords.size() == 1);
+    CHECK(other.scene.more_texcoords[0] == other.scene.texcoords);
 }
 
 TEST_CASE("a metallic-roughness texture that cannot be had leaves the factors alone, with one warning") {

@@ -15,6 +15,7 @@ GltfBuilder room(bool emissive = false, bool flat = false) {
     const int corners = flat ? builder.floats({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3") : builder.triangle_positions();
     builder.add("materials", {{"emissiveFactor", {emissive ? 1 : 0, 0, 0}}});
     builder.place({{"attributes", {{"POSITION", corners}}}, {"material", 0}});
+    if (flat) builder.place_triangle();
     const json camera = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}};
     builder.node({{"name", "near"}, {"camera", builder.add("cameras", camera)}, {"translation", {0, 0, 2}}});
     builder.node({{"name", "far"}, {"camera", builder.add("cameras", camera)}, {"translation", {0, 0, 9}}});

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "tracer/image_codec.hpp"
+#include "tracer/image_module/webp.hpp"
 
 namespace raycache::tracer {
 
@@ -17,6 +18,8 @@ const char* format_name(ImageFormat format) {
             return "png";
         case ImageFormat::jpeg:
             return "jpeg";
+        case ImageFormat::webp:
+            return "webp";
         case ImageFormat::exr:
             return "openexr";
         case ImageFormat::hdr:
@@ -55,6 +58,7 @@ class OpenImageIo final : public ImageCodec {
 public:
     std::string read_layout(std::span<const std::uint8_t> bytes, ImageFormat format,
                             ImageLayout& layout) const override {
+        if (format == ImageFormat::webp) return webp_layout(bytes, layout);
         const OpenedImage image(bytes, format);
         if (!image.problem.empty()) return image.problem;
         layout.width = image.spec.width;
@@ -71,6 +75,7 @@ public:
 
     std::string read_texels(std::span<const std::uint8_t> bytes, ImageFormat format, int channels, bool floats,
                             void* out, std::size_t stride) const override {
+        if (format == ImageFormat::webp) return webp_texels(bytes, channels, floats, out, stride);
         const OpenedImage image(bytes, format);
         if (!image.problem.empty()) return image.problem;
         if (image.input->read_image(0, 0, 0, channels, floats ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8, out,

@@ -17,9 +17,13 @@ struct Cutout {
 /// At (u, v) of a triangle whose material may have holes.
 inline Cutout cutout_at(const Scene& scene, const TexelLayout& texels, std::uint32_t triangle, float u, float v) {
     const Material& material = scene.materials[scene.material_of[triangle]];
-    if (material.base_color_texture < 0) return {material.alpha >= material.alpha_cutoff, false, 0};
-    const auto texel = texels.fetch(material.base_color_texture, texcoord_at(scene, triangle, u, v));
-    return {material.alpha * texel.alpha >= material.alpha_cutoff, true, texel.element};
+    const float alpha =
+        material.vertex_alpha ? material.alpha * vertex_color_at(scene, triangle, u, v).alpha : material.alpha;
+    if (material.base_color_texture < 0) return {alpha >= material.alpha_cutoff, false, 0};
+    const TextureLookup lookup = material.base_color_lookup;
+    const auto texel =
+        texels.fetch(material.base_color_texture, texcoord_at(scene, triangle, u, v, lookup.layer), lookup);
+    return {alpha * texel.alpha >= material.alpha_cutoff, true, texel.element};
 }
 
 }  // namespace raycache::tracer

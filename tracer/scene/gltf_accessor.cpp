@@ -55,7 +55,8 @@ void check_extent(std::size_t bytes, std::uint64_t offset, std::uint64_t count, 
     if (offset <= bytes && element_bytes <= bytes - offset && count - 1 <= (bytes - offset - element_bytes) / stride)
         return;
     report.fail(where, fmt::format("elements within its buffer view of {} bytes", bytes),
-                fmt::format("{} elements of {} bytes every {} from byte {}", count, element_bytes, stride, offset));
+                fmt::format("{} elements of {} bytes every {} from byte {}", count, element_bytes, stride, offset),
+                GltfReport::damaged);
 }
 
 }  // namespace
@@ -68,15 +69,23 @@ GltfAccessor::GltfAccessor(const GltfDocument& document, int index, int componen
         report.fail(what, fmt::format("an accessor below {}", accessors.size()), fmt::format("{}", index));
     const tinygltf::Accessor& accessor = accessors[static_cast<std::size_t>(index)];
     const std::string where = fmt::format("accessor {} ({})", index, what);
-    const int found_components = accessor.type == TINYGLTF_TYPE_SCALAR ? 1
-                                 : accessor.type <= TINYGLTF_TYPE_VEC4 ? accessor.type
-                                                                       : 0;
+    const int found_components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+    if (components == 0 && (found_components == 3 || accessor.type == TINYGLTF_TYPE_VEC4))
+        components = components_ = found_components;
+    const bool square = components == 16;  // matrices of this size have no padding
+    const bool kind_fits = square ? accessor.type == TINYGLTF_TYPE_MAT4
+                                  : accessor.type <= TINYGLTF_TYPE_VEC4 || accessor.type == TINYGLTF_TYPE_SCALAR;
     component_type_ = accessor.componentType;
     component_bytes_ = bytes_of(component_type_);
-    if (component_bytes_ == 0 || found_components != components || (is_index && !is_index_type(component_type_)))
+    if (component_bytes_ == 0 || found_components != components || !kind_fits ||
+        (is_index && !is_index_type(component_type_)))
         report.fail(where,
-                    is_index ? "SCALAR of unsigned byte, short or int"
-                             : fmt::format("VEC{} of byte, short, unsigned int or float", components),
+                    is_index && components == 1 ? "SCALAR of unsigned byte, short or int"
+                    : square                    ? "MAT4 of float"
+                    : components == 0
+                        ? "VEC3 or VEC4 of byte, short, unsigned int or float"
+                        : fmt::format("VEC{} of {}byte, short, {}", components, is_index ? "unsigned " : "",
+                                      is_index ? "int" : "unsigned int or float"),
                     fmt::format("{} components of type {}", found_components, component_type_));
     normalized_ = accessor.normalized;
     count_ = accessor.count;
@@ -170,9 +179,16 @@ Vec3 GltfAccessor::vec3(std::uint64_t element) const {
     return {component(bytes, 0), component(bytes, 1), component(bytes, 2)};
 }
 
-std::uint32_t GltfAccessor::integer(std::uint64_t element) const {
+std::array<float, 4> GltfAccessor::vec4(std::uint64_t element) const {
     const std::uint8_t* bytes = at(element);
-    return bytes ? load_integer(bytes, component_bytes_) : 0;
+    return {component(bytes, 0), component(bytes, 1), component(bytes, 2), components_ == 3 ? 1 : component(bytes, 3)};
+}
+
+float GltfAccessor::number(std::uint64_t element, int i) const { return component(at(element), i); }
+
+std::uint32_t GltfAccessor::integer(std::uint64_t element, int i) const {
+    const std::uint8_t* bytes = at(element);
+    return bytes ? load_integer(bytes + i * component_bytes_, component_bytes_) : 0;
 }
 
 }  // namespace raycache::tracer

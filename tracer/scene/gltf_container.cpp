@@ -22,21 +22,40 @@ void split_glb(GltfContainer& file, const GltfReport& report) {
         report.fail(where, fmt::format("at least {} bytes in the file", expected), fmt::format("{}", size),
                     "the file is truncated, copy it again");
     };
+    constexpr const char* wrong_header =
+        "its lengths contradict each other: the file was written wrongly, export it again";
     if (size < header_bytes + chunk_header_bytes) truncated("GLB header", header_bytes + chunk_header_bytes);
     const std::uint32_t version = little_endian32(file.bytes, 4), length = little_endian32(file.bytes, 8);
     if (version != 2)
         report.fail("GLB header", "version 2", fmt::format("version {}", version), "convert it to glTF 2.0");
     if (length > size) truncated("GLB header", length);
+    const auto too_short = [&](std::size_t needed) {
+        report.fail("GLB header", fmt::format("a length of at least {} bytes, that of its chunks", needed),
+                    fmt::format("{} in a file of {}", length, size), wrong_header);
+    };
+    if (length < header_bytes + chunk_header_bytes) too_short(header_bytes + chunk_header_bytes);
 
     std::size_t at = header_bytes;
-    for (int chunk = 0; at + chunk_header_bytes <= length; ++chunk) {
+    for (int chunk = 0; at + chunk_header_bytes <= size; ++chunk) {
         const std::size_t chunk_bytes = little_endian32(file.bytes, at);
         const std::uint32_t type = little_endian32(file.bytes, at + 4);
+        if (at >= length && (chunk != 1 || type != bin_chunk)) break;  // something else follows the scene
         at += chunk_header_bytes;
-        if (chunk_bytes > length - at) truncated(fmt::format("GLB chunk {}", chunk), at + chunk_bytes);
+        const std::string where = fmt::format("GLB chunk {}", chunk);
+        if (chunk_bytes > size - at) {
+            if (length < size || chunk == 0)
+                report.fail(where, fmt::format("a length of at most {} bytes", size - at),
+                            fmt::format("{}", chunk_bytes), wrong_header);
+            truncated(where, at + chunk_bytes);
+        }
+        if (at + chunk_bytes > length) too_short(at + chunk_bytes);
+        if (chunk_bytes % 4 != 0)
+            report.warning(
+                fmt::format("{}: its length of {} bytes is no multiple of 4; read as it is", where, chunk_bytes));
         const std::span<const std::uint8_t> content(file.bytes.data() + at, chunk_bytes);
         if (chunk == 0 && type != json_chunk)
             report.fail("GLB chunk 0", "type JSON (0x4e4f534a)", fmt::format("{:#010x}", type));
+        if (chunk == 0 && chunk_bytes == 0) break;
         if (chunk == 0) file.json = {reinterpret_cast<const char*>(content.data()), content.size()};
         if (chunk == 1 && type == bin_chunk) file.bin = content;
         at += chunk_bytes;

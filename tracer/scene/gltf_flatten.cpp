@@ -24,6 +24,15 @@ void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_v
                                     scene.normals.end());
     const std::vector<Vec2> texcoords(
         scene.texcoords.begin() + static_cast<std::ptrdiff_t>(has_texcoords ? first_vertex : 0), scene.texcoords.end());
+    const auto more = [&](auto& list) {  // what the moved vertices have of a list; none where it is empty
+        const std::size_t first = std::min(first_vertex, list.size());
+        const std::decay_t<decltype(list)> part(list.begin() + static_cast<std::ptrdiff_t>(first), list.end());
+        list.resize(first);
+        return part;
+    };
+    std::vector<std::vector<Vec2>> layers;
+    for (auto& layer : scene.more_texcoords) layers.push_back(more(layer));
+    const std::vector<VertexColor> colors = more(scene.colors);
     if (has_normals) scene.normals.resize(first_vertex);
     if (has_texcoords) scene.texcoords.resize(first_vertex);
     for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
@@ -37,13 +46,26 @@ void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_v
             scene.positions.push_back(moved[corners[k]]);
             if (has_normals) scene.normals.push_back(normals[corners[k]]);
             if (has_texcoords) scene.texcoords.push_back(texcoords[corners[k]]);
+            for (std::size_t l = 0; l < layers.size(); ++l) scene.more_texcoords[l].push_back(layers[l][corners[k]]);
+            if (!colors.empty()) scene.colors.push_back(colors[corners[k]]);
         }
         scene.material_of.push_back(primitive.material);
     }
 }
 
-void append_primitive(const GltfPrimitive& primitive, const Transform& to_world, bool with_normals, bool with_texcoords,
-                      Scene& scene, GltfLosses& losses) {
+/// What some placed primitive has, and so every vertex gets.
+struct Attributes {
+    bool normals = false, colors = false;
+    std::size_t layers = 0;
+};
+
+/// The list that holds a layer of texture coordinates.
+std::vector<Vec2>& layer_of(Scene& scene, std::size_t layer) {
+    return layer == 0 ? scene.texcoords : scene.more_texcoords[layer - 1];
+}
+
+void append_primitive(const GltfPrimitive& primitive, const Transform& to_world, const Attributes& with, Scene& scene,
+                      GltfLosses& losses) {
     const std::size_t first_vertex = scene.positions.size(), count = primitive.positions.size();
     bool usable = true;
     for (const Vec3 p : primitive.positions) {
@@ -51,11 +73,19 @@ void append_primitive(const GltfPrimitive& primitive, const Transform& to_world,
         usable = usable && is_usable_position(world);
         scene.positions.push_back(world);
     }
-    if (with_normals && primitive.normals.empty()) append(scene.normals, count, Vec3{0, 0, 0});
+    if (with.normals && primitive.normals.empty()) append(scene.normals, count, Vec3{0, 0, 0});
     const NormalTransform normal_to_world(to_world);
     for (const Vec3 n : primitive.normals) scene.normals.push_back(normal_to_world(n));
-    if (with_texcoords && primitive.texcoords.empty()) append(scene.texcoords, count, Vec2{0, 0});
-    scene.texcoords.insert(scene.texcoords.end(), primitive.texcoords.begin(), primitive.texcoords.end());
+    for (std::size_t layer = 0; layer < with.layers; ++layer) {
+        auto& list = layer_of(scene, layer);
+        const bool has = layer < primitive.texcoords.size() && !primitive.texcoords[layer].empty();
+        if (has)
+            list.insert(list.end(), primitive.texcoords[layer].begin(), primitive.texcoords[layer].end());
+        else
+            append(list, count, Vec2{0, 0});
+    }
+    if (with.colors && primitive.colors.empty()) append(scene.colors, count, VertexColor{});
+    scene.colors.insert(scene.colors.end(), primitive.colors.begin(), primitive.colors.end());
 
     const bool turn = to_world.determinant() < 0;
     if (!usable) {
@@ -76,7 +106,16 @@ void append_primitive(const GltfPrimitive& primitive, const Transform& to_world,
 void check_scene_size(const std::vector<GltfPlacement>& placements,
                       const std::vector<std::vector<GltfPrimitiveSource>>& sources, const GltfReport& report) {
     constexpr std::uint64_t triangle_bytes = 3 * sizeof(std::uint32_t) + sizeof(std::uint16_t);
-    constexpr std::uint64_t vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2) + sizeof(std::uint32_t);
+    constexpr std::uint64_t plain_vertex_bytes = 2 * sizeof(Vec3) + sizeof(Vec2) + sizeof(std::uint32_t);
+    std::uint64_t vertex_bytes = plain_vertex_bytes;
+    std::size_t layers = 1;
+    bool colors = false;
+    for (const auto& mesh : sources)
+        for (const auto& primitive : mesh) {
+            layers = std::max(layers, primitive.texcoords.size());
+            colors = colors || primitive.colors;
+        }
+    vertex_bytes += (layers - 1) * sizeof(Vec2) + (colors ? sizeof(VertexColor) : 0);
     constexpr std::uint64_t placement_bytes = 16;  // none in truth: bounds the time that placing nothing takes
     std::uint64_t triangles = 0, bytes = 0;
     const auto add = [&](const GltfPrimitiveSource& primitive) {
@@ -102,23 +141,27 @@ void check_scene_size(const std::vector<GltfPlacement>& placements,
 void flatten_gltf_meshes(const std::vector<GltfPlacement>& placements,
                          const std::vector<std::vector<GltfPrimitive>>& meshes, Scene& scene, GltfLosses& losses) {
     std::size_t vertices = 0, indices = 0;
-    bool with_normals = false, with_texcoords = false;
+    Attributes with;
     for (const GltfPlacement& placement : placements) {
         for (const GltfPrimitive& primitive : meshes[static_cast<std::size_t>(placement.object)]) {
             vertices += primitive.positions.size();
             indices += primitive.indices.size();
-            with_normals = with_normals || !primitive.normals.empty();
-            with_texcoords = with_texcoords || !primitive.texcoords.empty();
+            with.normals = with.normals || !primitive.normals.empty();
+            with.colors = with.colors || !primitive.colors.empty();
+            for (std::size_t layer = 0; layer < primitive.texcoords.size(); ++layer)
+                if (!primitive.texcoords[layer].empty()) with.layers = std::max(with.layers, layer + 1);
         }
     }
     scene.positions.reserve(vertices);
-    if (with_normals) scene.normals.reserve(vertices);
-    if (with_texcoords) scene.texcoords.reserve(vertices);
+    if (with.normals) scene.normals.reserve(vertices);
+    if (with.colors) scene.colors.reserve(vertices);
+    scene.more_texcoords.resize(with.layers > 1 ? with.layers - 1 : 0);
+    for (std::size_t layer = 0; layer < with.layers; ++layer) layer_of(scene, layer).reserve(vertices);
     scene.indices.reserve(indices);
     scene.material_of.reserve(indices / 3);
     for (const GltfPlacement& placement : placements)
         for (const GltfPrimitive& primitive : meshes[static_cast<std::size_t>(placement.object)])
-            append_primitive(primitive, placement.to_world, with_normals, with_texcoords, scene, losses);
+            append_primitive(primitive, placement.to_world, with, scene, losses);
 }
 
 }  // namespace raycache::tracer

@@ -12,30 +12,33 @@ namespace {
 
 /// Materials that are treated otherwise than their author meant; each kind becomes at most one warning.
 struct Approximations {
-    std::size_t emissive_textures = 0, clamped = 0, missing_images = 0, out_of_range = 0, other_textures = 0,
+    std::size_t missing_images = 0, out_of_range = 0, bright = 0, normal_maps = 0, transmission_textures = 0,
                 absorbing = 0;
     void report(const GltfReport& out) const {
-        if (emissive_textures > 0)
-            out.warning(fmt::format("{} materials have an emissive texture; it is ignored and the emissive factor used",
-                                    emissive_textures));
-        if (clamped > 0)
-            out.warning(fmt::format("{} materials have a texture that clamps or mirrors; it is repeated", clamped));
-        if (missing_images > 0)
-            out.warning(
-                fmt::format("{} materials have a texture without an image we can read; the factors alone are used",
-                            missing_images));
-        if (out_of_range > 0)
-            out.warning(fmt::format("{} materials have a factor out of glTF's range; the nearest value in it is used",
-                                    out_of_range));
-        if (other_textures > 0)
-            out.warning(
-                fmt::format("{} materials have a metallic-roughness texture with texture coordinates of its own "
-                            "or a transmission texture; the factors alone are used",
-                            other_textures));
-        if (absorbing > 0)
-            out.warning(fmt::format("{} materials absorb light in their volume; they are rendered clear", absorbing));
+        const auto warn = [&](std::size_t count, const char* what) {
+            if (count > 0) out.warning(fmt::format("{} materials {}", count, what));
+        };
+        warn(missing_images, "have a texture without an image we can read; the factors alone are used");
+        warn(out_of_range, "have a factor out of glTF's range; the nearest value in it is used");
+        warn(bright, "have an emissive factor above 1, which glTF does not allow; it is taken as it is");
+        warn(normal_maps, "have a normal map; it is left out, and the surface is as smooth as its geometry");
+        warn(transmission_textures, "have a transmission texture; the factors alone are used");
+        warn(absorbing, "absorb light in their volume; they are rendered clear");
     }
 };
+
+Wrap wrap_of(int mode, const std::string& where, const GltfReport& report) {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return Wrap::repeat;
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Wrap::clamp;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Wrap::mirror;
+        default:
+            report.fail(where, "a wrap mode: 10497, 33071 or 33648", fmt::format("{}", mode));
+    }
+}
 
 class MaterialReader {
 public:
@@ -57,7 +60,9 @@ public:
         read_emission(source, used, where, material);
         read_glass(source, used, where, material);
         approximations.out_of_range += used && !in_range_;
-        result.texcoord_set.push_back(-1);
+        result.texcoords.emplace_back();
+        result.blended.push_back(source.alphaMode == "BLEND");
+        result.double_sided.push_back(source.doubleSided);
         if (used) read_textures(source, where, material);
         result.materials.push_back(std::move(material));
     }
@@ -93,7 +98,7 @@ private:
         const bool absorbs = number(source, volume, "attenuationDistance", 0, where) > 0;
         approximations.absorbing += used && absorbs && material.transmission > 0 && !material.thin;
         const auto found = source.extensions.find(transmission);
-        approximations.other_textures +=
+        approximations.transmission_textures +=
             used && found != source.extensions.end() && found->second.Has("transmissionTexture");
     }
 
@@ -111,55 +116,83 @@ private:
     void read_emission(const tinygltf::Material& source, bool used, const std::string& where, Material& material) {
         const double strength = number(source, "KHR_materials_emissive_strength", "emissiveStrength", 1, where);
         const auto& factor = source.emissiveFactor;  // tinygltf: always 3
-        const auto radiance = [&](double f) { return static_cast<float>(std::max(0.0, f * strength)); };
+        const auto radiance = [&](double f) {
+            in_range_ = in_range_ && f >= 0 && strength >= 0;
+            return static_cast<float>(std::max(0.0, f) * std::max(0.0, strength));
+        };
         material.emission = {radiance(factor[0]), radiance(factor[1]), radiance(factor[2])};
         if (!(max_component(material.emission) <= 1e18F))
-            report_.fail(where + " emission", "a radiance of at most 1e18", fmt::format("strength {}", strength));
-        approximations.emissive_textures += used && source.emissiveTexture.index != -1;
+            report_.fail(where + " emission", "a radiance of at most 1e18",
+                         fmt::format("a factor of {:g}, {:g}, {:g} and a strength of {:g}", factor[0], factor[1],
+                                     factor[2], strength),
+                         "make the light weaker");
+        approximations.bright += used && std::max({factor[0], factor[1], factor[2]}) > 1;
     }
 
     void read_textures(const tinygltf::Material& source, const std::string& where, Material& material) {
-        const auto& color = source.pbrMetallicRoughness.baseColorTexture;
-        const auto& rough = source.pbrMetallicRoughness.metallicRoughnessTexture;
-        int& set = result.texcoord_set.back();
-        if (color.index != -1) {
-            material.base_color_texture = read_texture(color, where);
-            if (material.base_color_texture >= 0) set = color.texCoord;
-        }
-        if (rough.index == -1) return;
-        const int slot = read_texture(rough, where);
-        if (slot >= 0 && set >= 0 && set != rough.texCoord) {
-            ++approximations.other_textures;
-        } else if (slot >= 0) {
-            material.metallic_roughness_texture = slot;
-            set = rough.texCoord;
-        }
+        const auto& pbr = source.pbrMetallicRoughness;
+        material.base_color_texture = read_texture(pbr.baseColorTexture, where, material.base_color_lookup);
+        material.metallic_roughness_texture =
+            read_texture(pbr.metallicRoughnessTexture, where, material.metallic_roughness_lookup);
+        if (max_component(material.emission) > 0)
+            material.emission_texture = read_texture(source.emissiveTexture, where, material.emission_lookup);
+        approximations.normal_maps += source.normalTexture.index != -1;
     }
 
     /// The slot of its image, or -1 where it has none.
-    int read_texture(const tinygltf::TextureInfo& info, const std::string& where) {
+    template <class TextureInfo>
+    int read_texture(const TextureInfo& info, const std::string& where, TextureLookup& lookup) {
+        if (info.index == -1) return -1;
         const auto check = [&](int index, std::size_t count, const std::string& kind) {
             if (index < 0 || static_cast<std::size_t>(index) >= count)
                 report_.fail(where, fmt::format("{} below {}", kind, count), fmt::format("{}", index));
             return static_cast<std::size_t>(index);
         };
         const tinygltf::Texture& texture = model_.textures[check(info.index, model_.textures.size(), "a texture")];
-        if (info.texCoord < 0) report_.fail(where + " texCoord", "0 or more", fmt::format("{}", info.texCoord));
-        if (texture.sampler != -1) {
-            const auto& sampler = model_.samplers[check(texture.sampler, model_.samplers.size(), "a sampler")];
-            approximations.clamped +=
-                sampler.wrapS != TINYGLTF_TEXTURE_WRAP_REPEAT || sampler.wrapT != TINYGLTF_TEXTURE_WRAP_REPEAT;
-        }
         if (texture.source == -1) {  // an extension has it, in a format we lack
             ++approximations.missing_images;
             return -1;
         }
+        if (texture.sampler != -1) {
+            const auto& sampler = model_.samplers[check(texture.sampler, model_.samplers.size(), "a sampler")];
+            const std::string place = fmt::format("sampler {}", texture.sampler);
+            lookup.s = wrap_of(sampler.wrapS, place, report_);
+            lookup.t = wrap_of(sampler.wrapT, place, report_);
+        }
+        lookup.layer = layer_of(texcoords_of(info));
         int& slot = slot_of_image_[check(texture.source, images_, "an image")];
         if (slot < 0) {
             slot = static_cast<int>(result.images.size());
             result.images.push_back(texture.source);
         }
         return slot;
+    }
+
+    /// Of the material being read.
+    std::uint8_t layer_of(const GltfTexcoords& wanted) {
+        auto& layers = result.texcoords.back();
+        const auto found = std::find(layers.begin(), layers.end(), wanted);
+        const auto layer = static_cast<std::uint8_t>(found - layers.begin());
+        if (found == layers.end()) layers.push_back(wanted);
+        return layer;
+    }
+
+    template <class TextureInfo>
+    static GltfTexcoords texcoords_of(const TextureInfo& info) {
+        GltfTexcoords result;
+        result.set = info.texCoord;
+        const auto found = info.extensions.find("KHR_texture_transform");
+        if (found == info.extensions.end()) return result;
+        const tinygltf::Value& transform = found->second;
+        const auto pair = [&](const char* key, int i, double otherwise) {
+            return transform.Has(key) ? transform.Get(key).Get(i).GetNumberAsDouble() : otherwise;
+        };
+        if (transform.Has("texCoord")) result.set = transform.Get("texCoord").GetNumberAsInt();
+        const double angle = transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0;
+        // Counter-clockwise as one sees the texture, whose v grows downwards.
+        const double c = std::cos(angle), s = std::sin(angle), x = pair("scale", 0, 1), y = pair("scale", 1, 1);
+        result.rows = {c * x, s * y, pair("offset", 0, 0), -s * x, c * y, pair("offset", 1, 0)};
+        return result;
     }
 
     const tinygltf::Model& model_;
@@ -170,6 +203,13 @@ private:
 };
 
 }  // namespace
+
+Vec2 GltfTexcoords::operator()(Vec2 stored) const {
+    const auto row = [&](std::size_t r) {
+        return static_cast<float>(rows[r] * stored.x + rows[r + 1] * stored.y + rows[r + 2]);
+    };
+    return {row(0), row(3)};
+}
 
 GltfMaterials read_gltf_materials(const GltfDocument& document, const std::vector<bool>& used,
                                   const GltfReport& report) {
@@ -184,7 +224,9 @@ GltfMaterials read_gltf_materials(const GltfDocument& document, const std::vecto
         Material& material = reader.result.materials.emplace_back();
         material.name = "default";
         material.metallic = 1;
-        reader.result.texcoord_set.push_back(-1);
+        reader.result.texcoords.emplace_back();
+        reader.result.blended.push_back(false);
+        reader.result.double_sided.push_back(false);
     }
     reader.approximations.report(report);
     return std::move(reader.result);

@@ -29,6 +29,65 @@ std::array<std::uint64_t, 3> corners_of(int mode, std::uint64_t triangle) {
     }
 }
 
+/// Corners that the mode leaves over, or all where they are too few for one triangle.
+std::uint64_t spare_corners(int mode, std::uint64_t corners) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) return corners % 3;
+    return corners < 3 ? corners : 0;
+}
+
+/// Targets that have a weight, and what they hold that is not used.
+void open_targets(const GltfDocument& document, const tinygltf::Primitive& source, const GltfShape& shape,
+                  GltfPrimitiveSource& result, GltfLosses& losses, const GltfReport& report) {
+    for (std::size_t t = 0; t < source.targets.size() && t < shape.weights.size(); ++t) {
+        if (shape.weights[t] == 0) continue;
+        GltfTarget target;
+        target.weight = shape.weights[t];
+        for (const auto& [name, index] : source.targets[t]) {
+            const std::string what = fmt::format("{} target {} {}", result.where, t, name);
+            auto* slot = name == "POSITION" ? &target.positions : name == "NORMAL" ? &target.normals : nullptr;
+            if (!slot) {
+                losses.other_targets += name != "TANGENT";
+                continue;
+            }
+            slot->emplace(document, index, 3, false, what, report);
+            if ((*slot)->count() != result.positions.count())
+                report.fail(what, fmt::format("{} elements, as many as POSITION", result.positions.count()),
+                            fmt::format("{}", (*slot)->count()));
+        }
+        result.targets.push_back(std::move(target));
+    }
+}
+
+Vec3 with_targets(Vec3 base, const GltfPrimitiveSource& source, std::uint64_t v,
+                  const std::optional<GltfAccessor> GltfTarget::*what) {
+    if (source.targets.empty()) return base;
+    double x = base.x, y = base.y, z = base.z;
+    for (const GltfTarget& target : source.targets) {
+        if (!(target.*what)) continue;
+        const Vec3 more = (target.*what)->vec3(v);
+        x += target.weight * more.x;
+        y += target.weight * more.y;
+        z += target.weight * more.z;
+    }
+    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+}
+
+VertexColor color_at(const GltfAccessor& accessor, std::uint64_t v, GltfLosses& losses) {
+    std::array<float, 4> c = accessor.vec4(v);
+    if (!std::all_of(c.begin(), c.end(), [](float f) { return std::isfinite(f); })) {
+        ++losses.bad_attributes;
+        c = {1, 1, 1, 1};
+    }
+    bool clamped = false;
+    for (float& f : c) {
+        const float kept = std::clamp(f, 0.0F, 1.0F);
+        clamped = clamped || kept != f;
+        f = kept;
+    }
+    losses.clamped_colors += clamped;
+    return {{c[0], c[1], c[2]}, c[3]};
+}
+
 }  // namespace
 
 void GltfLosses::report(const GltfReport& out) const {
@@ -36,8 +95,10 @@ void GltfLosses::report(const GltfReport& out) const {
         out.warning(fmt::format("skipped {} triangles with a vertex that is not finite or beyond {:g} m", bad_triangles,
                                 max_coordinate));
     if (bad_attributes > 0)
-        out.warning(fmt::format("{} normals or texture coordinates are not finite; replaced by the face normal or 0",
-                                bad_attributes));
+        out.warning(
+            fmt::format("{} normals, texture coordinates or colours are not finite; replaced by the face "
+                        "normal, 0 or white",
+                        bad_attributes));
     if (points_and_lines > 0)
         out.warning(fmt::format("skipped {} primitives made of points or lines", points_and_lines));
     if (without_positions > 0)
@@ -46,13 +107,29 @@ void GltfLosses::report(const GltfReport& out) const {
         out.warning(
             fmt::format("{} textured primitives lack the texture coordinates their texture asks for; (0,0) used",
                         without_texcoords));
+    if (clamped_colors > 0)
+        out.warning(
+            fmt::format("{} colours of vertices are beyond 0 to 1; the nearest in it are used", clamped_colors));
+    if (spare_corners > 0)
+        out.warning(fmt::format("{} indices or vertices at the end of primitives make no whole triangle; left out",
+                                spare_corners));
+    if (other_targets > 0)
+        out.warning(
+            fmt::format("{} morph targets of attributes other than POSITION and NORMAL are left out", other_targets));
+    if (open_back_faces > 0)
+        out.warning(
+            fmt::format("{} triangles show a camera the back of an open, single-sided mesh; both sides of a "
+                        "surface are there (glTF's doubleSided: false would hide them)",
+                        open_back_faces));
 }
 
-std::optional<GltfPrimitiveSource> open_gltf_primitive(const GltfDocument& document, int mesh, std::size_t primitive,
-                                                       int texcoord_set, std::uint16_t material, GltfLosses& losses,
+std::optional<GltfPrimitiveSource> open_gltf_primitive(const GltfDocument& document, const GltfShape& shape,
+                                                       std::size_t primitive, const std::vector<GltfTexcoords>& layers,
+                                                       std::uint16_t material,
+                                                       const std::shared_ptr<const GltfSkin>& skin, GltfLosses& losses,
                                                        const GltfReport& report) {
-    const auto& source = document.model.meshes[static_cast<std::size_t>(mesh)].primitives[primitive];
-    const std::string where = fmt::format("mesh {} primitive {}", mesh, primitive);
+    const auto& source = document.model.meshes[static_cast<std::size_t>(shape.mesh)].primitives[primitive];
+    const std::string where = fmt::format("mesh {} primitive {}", shape.mesh, primitive);
     if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
         report.fail(where, "a mode from 0 to 6", fmt::format("{}", source.mode));
     if (source.mode < TINYGLTF_MODE_TRIANGLES) {
@@ -65,26 +142,49 @@ std::optional<GltfPrimitiveSource> open_gltf_primitive(const GltfDocument& docum
         return std::nullopt;
     }
     GltfPrimitiveSource result(GltfAccessor(document, position->second, 3, false, where + " POSITION", report));
+    result.where = where;
     const std::uint64_t vertices = result.positions.count();
+    const auto not_empty = [&](std::uint64_t count, int accessor, const char* what) {
+        if (count == 0)
+            report.fail(fmt::format("accessor {} ({} {})", accessor, where, what), "a count of 1 or more", "0");
+    };
+    not_empty(vertices, position->second, "POSITION");
     if (vertices >= unused) report.fail(where, "less than 4294967295 vertices", fmt::format("{}", vertices));
-    const auto open = [&](const std::string& name, int components) -> std::optional<GltfAccessor> {
+    const auto open = [&](const std::string& name, int components, bool integers) -> std::optional<GltfAccessor> {
         const auto found = source.attributes.find(name);
         if (found == source.attributes.end()) return std::nullopt;
-        GltfAccessor accessor(document, found->second, components, false, where + " " + name, report);
+        GltfAccessor accessor(document, found->second, components, integers, where + " " + name, report);
         if (accessor.count() != vertices)
             report.fail(where + " " + name, fmt::format("{} elements, as many as POSITION", vertices),
                         fmt::format("{}", accessor.count()));
         return accessor;
     };
-    result.normals = open("NORMAL", 3);
-    if (texcoord_set >= 0) {
-        result.texcoords = open(fmt::format("TEXCOORD_{}", texcoord_set), 2);
-        if (!result.texcoords) ++losses.without_texcoords;
+    result.normals = open("NORMAL", 3, false);
+    result.colors = open("COLOR_0", 0, false);
+    bool lacks_texcoords = false;
+    for (const GltfTexcoords& layer : layers) {
+        result.texcoords.emplace_back(layer, open(fmt::format("TEXCOORD_{}", layer.set), 2, false));
+        lacks_texcoords = lacks_texcoords || !result.texcoords.back().second;
     }
-    if (source.indices != -1) result.indices.emplace(document, source.indices, 1, true, where + " indices", report);
+    losses.without_texcoords += lacks_texcoords;
+    open_targets(document, source, shape, result, losses, report);
+    for (int set = 0; skin; ++set) {
+        auto joints = open(fmt::format("JOINTS_{}", set), 4, true);
+        auto weights = open(fmt::format("WEIGHTS_{}", set), 4, false);
+        if (!joints || !weights) break;
+        result.skin = skin;
+        result.joints.push_back(std::move(*joints));
+        result.weights.push_back(std::move(*weights));
+    }
+    if (source.indices != -1) {
+        result.indices.emplace(document, source.indices, 1, true, where + " indices", report);
+        not_empty(result.indices->count(), source.indices, "indices");
+    }
     result.mode = source.mode;
     result.material = material;
-    result.triangles = triangles_of(source.mode, result.indices ? result.indices->count() : vertices);
+    const std::uint64_t corners = result.indices ? result.indices->count() : vertices;
+    result.triangles = triangles_of(source.mode, corners);
+    losses.spare_corners += spare_corners(source.mode, corners);
     return result;
 }
 
@@ -93,6 +193,9 @@ GltfPrimitive decode_gltf_primitive(const GltfPrimitiveSource& source, GltfLosse
     GltfPrimitive result;
     result.material = source.material;
     result.indices.reserve(3 * source.triangles);
+    const auto position_at = [&](std::uint64_t v) {
+        return with_targets(source.positions.vec3(v), source, v, &GltfTarget::positions);
+    };
     std::uint32_t first = unused, last = 0;
     for (std::uint64_t t = 0; t < source.triangles; ++t) {
         std::array<std::uint32_t, 3> vertices{};
@@ -101,9 +204,10 @@ GltfPrimitive decode_gltf_primitive(const GltfPrimitiveSource& source, GltfLosse
         for (std::size_t k = 0; k < 3; ++k) {
             vertices[k] = source.indices ? source.indices->integer(corners[k]) : static_cast<std::uint32_t>(corners[k]);
             if (vertices[k] >= vertex_count)
-                report.fail(fmt::format("triangle {} of a mesh", t), fmt::format("a vertex below {}", vertex_count),
-                            fmt::format("{}", vertices[k]));
-            usable = usable && is_usable_position(source.positions.vec3(vertices[k]));
+                report.fail(fmt::format("{} triangle {}", source.where, t),
+                            fmt::format("a vertex below {}", vertex_count), fmt::format("{}", vertices[k]),
+                            GltfReport::damaged);
+            usable = usable && is_usable_position(position_at(vertices[k]));
         }
         if (!usable) {
             ++losses.bad_triangles;
@@ -120,27 +224,37 @@ GltfPrimitive decode_gltf_primitive(const GltfPrimitiveSource& source, GltfLosse
     // Several primitives may share one long accessor: keep, and look at, only what this one uses.
     std::vector<std::uint32_t> new_index(last - first + 1, unused);
     for (const std::uint32_t index : result.indices) new_index[index - first] = 0;
+    result.texcoords.resize(source.texcoords.size());
     for (std::uint32_t v = first; v <= last; ++v) {
         if (new_index[v - first] == unused) continue;
         new_index[v - first] = static_cast<std::uint32_t>(result.positions.size());
-        result.positions.push_back(source.positions.vec3(v));
+        result.positions.push_back(position_at(v));
         if (source.normals) {
-            Vec3 normal = source.normals->vec3(v);
+            Vec3 normal = with_targets(source.normals->vec3(v), source, v, &GltfTarget::normals);
             if (!is_finite(normal)) {
                 ++losses.bad_attributes;
                 normal = {0, 0, 0};
             }
             result.normals.push_back(normal);
         }
-        if (source.texcoords) {
-            Vec2 texcoord = source.texcoords->vec2(v);
+        for (std::size_t layer = 0; layer < source.texcoords.size(); ++layer) {
+            const auto& [use, accessor] = source.texcoords[layer];
+            if (!accessor) continue;
+            Vec2 texcoord = use(accessor->vec2(v));
             if (!std::isfinite(texcoord.x) || !std::isfinite(texcoord.y)) {
                 ++losses.bad_attributes;
                 texcoord = {0, 0};
             }
-            result.texcoords.push_back(texcoord);
+            result.texcoords[layer].push_back(texcoord);
         }
+        if (source.colors) result.colors.push_back(color_at(*source.colors, v, losses));
+        if (source.skin)
+            bend_vertex(*source.skin, source.joints, source.weights, v, result.positions.back(),
+                        result.normals.empty() ? nullptr : &result.normals.back(), source.where, report);
     }
+    if (std::all_of(result.colors.begin(), result.colors.end(),
+                    [](const VertexColor& c) { return c == VertexColor{}; }))
+        result.colors.clear();
     for (std::uint32_t& index : result.indices) index = new_index[index - first];
     return result;
 }

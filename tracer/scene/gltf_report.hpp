@@ -17,9 +17,13 @@ public:
 
     const std::string& path() const { return path_; }
 
+    /// Remedies: of bytes that are missing, and of a description that is not what glTF 2.0 allows.
+    static constexpr const char* damaged = "the file is cut short or damaged: copy or export it again";
+    static constexpr const char* invalid = "glTF 2.0 does not allow it: correct it or export the scene again";
+
     /// Throws Error "PATH: WHERE: expected EXPECTED, found FOUND; REMEDY".
     [[noreturn]] void fail(const std::string& where, const std::string& expected, const std::string& found,
-                           const std::string& remedy = "the file is damaged, export it again") const;
+                           const std::string& remedy = invalid) const;
 
     void warning(const std::string& text) const;
 

@@ -28,10 +28,12 @@ void read_image(const GltfDocument& document, const GltfImage& image, GltfImageB
         if (!bytes) throw Error("its data: URI is not base64");
         result.owned = std::move(*bytes);
     } else {
-        const auto path = resolve_relative_uri(report.path(), *image.uri);
-        if (!path) throw Error("its URI is not a relative path");
-        result.owned = read_regular_file(*path, "image", report.memory().get());
-        result.file = *path;
+        const UriFile file = find_uri_file(report.path(), *image.uri);
+        if (file.path.empty()) throw Error("its URI is not a relative path; " + file.remedy);
+        if (!file.exists && !file.remedy.empty()) throw Error("there is no such file; " + file.remedy);
+        result.owned = read_regular_file(file.path, "image", report.memory().get());
+        result.file = file.path;
+        if (!file.note.empty()) report.warning(fmt::format("image {}: the URI {}", result.name, file.note));
     }
     result.bytes = result.owned;
 }
@@ -105,7 +107,8 @@ std::vector<Texture> decode_gltf_textures(const std::vector<GltfImageBytes>& ima
         result.push_back(std::move(decoded[i]));
     }
     for (Material& material : materials)
-        for (int* slot : {&material.base_color_texture, &material.metallic_roughness_texture})
+        for (int* slot :
+             {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture})
             if (*slot >= 0) *slot = index_of[static_cast<std::size_t>(*slot)];
     if (failed > 0)
         report.warning(

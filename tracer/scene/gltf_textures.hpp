@@ -1,4 +1,4 @@
-// The base colour images of a glTF file: found, read, and decoded on all cores.
+// The images of a glTF file that materials use: found, read, and decoded on all cores.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "tracer/scene/gltf_uri.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -74,12 +75,43 @@ std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri) {
     return decode_base64(uri.substr(comma + 1));
 }
 
-std::optional<std::string> resolve_relative_uri(const std::string& gltf_path, std::string_view uri) {
+UriFile find_uri_file(const std::string& gltf_path, std::string_view uri) {
+    UriFile result;
+    result.remedy = "export the scene with its files beside it";
     const auto colon = uri.find(':');
-    if (colon != std::string_view::npos && colon < uri.find('/')) return std::nullopt;
+    if (uri.empty() || uri.front() == '/' || (colon != std::string_view::npos && colon < uri.find('/'))) return result;
+    const auto folder = std::filesystem::path(gltf_path).parent_path();
     const auto decoded = percent_decode(uri);
-    if (!decoded || decoded->empty() || decoded->front() == '/') return std::nullopt;
-    return (std::filesystem::path(gltf_path).parent_path() / *decoded).string();
+    const bool backslashes = uri.find('\\') != std::string_view::npos;
+    result.remedy = !decoded      ? "its % begins no escape: write %25, or rename the file"
+                    : backslashes ? "its backslash is no separator of folders in a URI: write /"
+                                  : "";
+    const auto with_slashes = [](std::string text) {
+        std::replace(text.begin(), text.end(), '\\', '/');
+        return text;
+    };
+    struct Reading {
+        std::optional<std::string> name;
+        const char* note;
+    };
+    const Reading readings[] = {
+        {decoded, ""},
+        {std::string(uri), "is taken as it is, % and all: its escapes name no file"},
+        {decoded ? std::optional(with_slashes(*decoded)) : std::nullopt, "has backslashes, read as /"},
+        {with_slashes(std::string(uri)), "has backslashes, read as /, and a % that begins no escape"},
+    };
+    for (const auto& [name, note] : readings) {
+        if (!name || name->empty() || name->front() == '/') continue;
+        std::error_code error;
+        const auto path = folder / *name;
+        const bool exists = std::filesystem::exists(path, error);
+        if (!exists && (!result.path.empty() || !decoded)) continue;
+        result.path = path.string();
+        result.exists = exists;
+        result.note = exists ? note : "";
+        if (exists) break;
+    }
+    return result;
 }
 
 }  // namespace raycache::tracer

@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "tracer/scene/emission.hpp"
 #include "tracer/scene/gltf_cameras.hpp"
 #include "tracer/scene/gltf_report.hpp"
 #include "tracer/scene/scene.hpp"
@@ -56,21 +57,10 @@ Scene load_file(const SceneRequest& request, const Warn& warn) {
     return load_gltf(request.source, warn);
 }
 
-/// An emissive material on triangles without area sends out nothing.
-bool has_emitter(const Scene& scene) {
-    for (std::size_t t = 0; t < scene.triangle_count(); ++t) {
-        if (!(max_component(scene.materials[scene.material_of[t]].emission) > 0)) continue;
-        const Vec3 a = scene.positions[scene.indices[3 * t]], b = scene.positions[scene.indices[3 * t + 1]],
-                   c = scene.positions[scene.indices[3 * t + 2]];
-        if (max_component(max(cross(b - a, c - a), cross(c - a, b - a))) > 0) return true;
-    }
-    return false;
-}
-
 void light_file(Scene& scene, const SceneRequest& request, const Warn& warn) {
     const auto sky = request.sky;
     if (sky == SceneRequest::Sky::off) return;
-    const bool emitter = has_emitter(scene);
+    const bool emitter = emits_light(scene);
     if (sky == SceneRequest::Sky::automatic && emitter) return;
     scene.sky = day_sky;
     if (emitter) return;

@@ -27,15 +27,27 @@ inline bool is_usable_position(Vec3 p) {
     return std::abs(p.x) <= max_coordinate && std::abs(p.y) <= max_coordinate && std::abs(p.z) <= max_coordinate;
 }
 
+/// Beyond the edges of a texture: it begins again, its last texel goes on, or it comes back.
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+
+/// How a material looks up one of its textures.
+struct TextureLookup {
+    std::uint8_t layer = 0;  ///< of texture coordinates: 0 = Scene::texcoords, n = Scene::more_texcoords[n - 1]
+    Wrap s = Wrap::repeat, t = Wrap::repeat;
+    bool operator==(const TextureLookup&) const = default;
+};
+
 struct Material {
     std::string name;
-    Vec3 base_color{1, 1, 1};     ///< factor, multiplied with the texture
+    Vec3 base_color{1, 1, 1};     ///< factor, multiplied with the texture and the colour of vertices
     float alpha = 1;              ///< factor
     int base_color_texture = -1;  ///< index into Scene::textures, or -1
     bool alpha_mask = false;      ///< glTF alphaMode MASK: a texel below `alpha_cutoff` is a hole
     float alpha_cutoff = 0.5F;
-    bool alpha_blend = false;  ///< glTF alphaMode BLEND: rays pass straight with probability 1 - alpha
-    Vec3 emission{0, 0, 0};    ///< radiance, W sr^-1 m^-2, factor times strength
+    bool alpha_blend = false;   ///< glTF alphaMode BLEND: rays pass straight with probability 1 - alpha
+    bool vertex_alpha = false;  ///< some triangle of it has a vertex whose alpha is not 1
+    Vec3 emission{0, 0, 0};     ///< radiance, W sr^-1 m^-2, factor times strength, multiplied with the texture
+    int emission_texture = -1;  ///< index into Scene::textures, or -1
 
     float metallic = 0, roughness = 1;    ///< factors, 0 … 1
     int metallic_roughness_texture = -1;  ///< green times roughness, blue times metallic; index, or -1
@@ -43,8 +55,12 @@ struct Material {
     float ior = 1.5F;                     ///< index of refraction, at least 1; 0: reflects everything
     bool thin = true;                     ///< glass is a pane; false: it bounds a solid
 
+    TextureLookup base_color_lookup, metallic_roughness_lookup, emission_lookup;
+
     /// Whether a ray may pass through some of its points: alphaMode MASK.
-    bool may_have_holes() const { return alpha_mask && (base_color_texture >= 0 || alpha < alpha_cutoff); }
+    bool may_have_holes() const {
+        return alpha_mask && (base_color_texture >= 0 || vertex_alpha || alpha < alpha_cutoff);
+    }
 
     /// Lambert's surface: neither metal nor glass, and a coat of roughness 1 counts as none.
     bool diffuse() const {
@@ -69,21 +85,41 @@ struct Sun {
     float angular_radius = 0.00465F;  ///< radians
 };
 
+/// A light of no size (KHR_lights_punctual). Only shadow rays find it.
+struct PunctualLight {
+    enum class Kind : std::uint8_t { point, spot, directional } kind = Kind::point;
+    Vec3 position{0, 0, 0};              ///< not of a directional one
+    Vec3 direction{0, 0, -1};            ///< unit, that it shines in; not of a point
+    Vec3 intensity{0, 0, 0};             ///< W sr^-1; directional: irradiance on a plane facing it, W m^-2
+    float range = 0;                     ///< metres, beyond which it is dark; 0 = none
+    float cos_inner = 1, cos_outer = 0;  ///< of a spot: full inside the one, dark outside the other
+};
+
+/// Linear colour with alpha.
+struct VertexColor {
+    Vec3 color{1, 1, 1};
+    float alpha = 1;
+    bool operator==(const VertexColor&) const = default;
+};
+
 struct Scene {
     std::string name;                ///< file name without folder, or "courtyard(detail=…)"
     std::uint64_t hash = 0;          ///< XXH3-64 of the source bytes (a .gltf: of its buffers and images too)
     std::vector<std::string> files;  ///< that it was read from; none of a built-in scene
 
-    std::vector<Vec3> positions;         ///< world space, all finite
-    std::vector<Vec3> normals;           ///< unit, one per position, or empty if no mesh has any; (0,0,0) = face normal
-    std::vector<Vec2> texcoords;         ///< one per position, or empty if no mesh has any
-    std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise from the front
-    std::vector<std::uint16_t> material_of;  ///< one per triangle
-    std::vector<Material> materials;         ///< at least one
+    std::vector<Vec3> positions;  ///< world space, all finite
+    std::vector<Vec3> normals;    ///< unit, one per position, or empty if no mesh has any; (0,0,0) = face normal
+    std::vector<Vec2> texcoords;  ///< one per position, or empty if no mesh has any
+    std::vector<std::vector<Vec2>> more_texcoords;  ///< further layers, each one per position
+    std::vector<VertexColor> colors;                ///< one per position, or empty if all are white
+    std::vector<std::uint32_t> indices;             ///< 3 per triangle, counter-clockwise from the front
+    std::vector<std::uint16_t> material_of;         ///< one per triangle
+    std::vector<Material> materials;                ///< at least one
     std::vector<Texture> textures;
     std::vector<Camera> cameras;  ///< at least one; the first is the default
     Vec3 sky{0, 0, 0};            ///< constant radiance from outside, 0 = none
     std::optional<Sun> sun;
+    std::vector<PunctualLight> punctual_lights;
     /// Unit of the distance that rays keep from the surface they leave (Surface::leave). 1 where the largest extent is
     /// 1 to 256, else a power of two in proportion to it. PreparedScene sets it.
     float offset_scale = 1;

@@ -72,8 +72,9 @@ void PathIntegrator::generate(std::uint32_t mask, PathLanes& p) const {
     });
 }
 
-std::uint32_t PathIntegrator::arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
-    std::uint32_t hit = 0;
+std::uint32_t PathIntegrator::arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) {
+    std::uint32_t hit = 0, glowing = 0;
+    std::uint32_t glow_element[lanes];
     for_each(mask, [&](unsigned l) {
         const bool for_lights_alone = vertex > settings_.bounces || p.reflections[l] > settings_.bounces_diffuse ||
                                       p.transmissions[l] > settings_.bounces_transmission;
@@ -87,13 +88,22 @@ std::uint32_t PathIntegrator::arrive(std::uint32_t mask, std::uint32_t vertex, P
             return;
         }
         p.surface[l] = surface_at(scene_, p.rays[l], p.hits[l]);
-        if (const Vec3 emission = p.surface[l].material->emission; pdf > 0 && max_component(emission) > 0) {
+        const Material& material = *p.surface[l].material;
+        if (Vec3 emission = material.emission; pdf > 0 && max_component(emission) > 0) {
+            const Hit& at = p.hits[l];
+            if (material.emission_texture >= 0) {
+                const auto texel = emission_texel(material, at.triangle, at.u, at.v);
+                glow_element[l] = texel.element;
+                emission *= texel.color;
+                glowing |= 1U << l;
+            }
             const float cosine = dot(p.surface[l].geometric_normal, p.rays[l].direction);
-            p.radiance[l] +=
-                p.throughput[l] * emission * power_heuristic(pdf, lights_.emitter_pdf(emission, p.hits[l].t, cosine));
+            p.radiance[l] += p.throughput[l] * emission *
+                             power_heuristic(pdf, lights_.emitter_pdf(material, at.triangle, at.t, cosine));
         }
         if (!for_lights_alone) hit |= 1U << l;
     });
+    if (glowing != 0) traversal_.read_texels(glowing, type_of(vertex), static_cast<std::uint8_t>(vertex), glow_element);
     return hit;
 }
 
@@ -105,19 +115,26 @@ std::uint32_t PathIntegrator::shade(std::uint32_t mask, std::uint32_t vertex, Pa
         Shading shading{material.base_color, material.alpha, material.metallic, material.roughness};
         const Hit& hit = p.hits[l];
         if (material.base_color_texture >= 0) {
-            const auto texel =
-                texels_.fetch(material.base_color_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
+            const TextureLookup lookup = material.base_color_lookup;
+            const auto texel = texels_.fetch(material.base_color_texture,
+                                             texcoord_at(scene_, hit.triangle, hit.u, hit.v, lookup.layer), lookup);
             color_element[l] = texel.element;
             shading.color *= texel.color;
             shading.alpha *= texel.alpha;
             colored |= 1U << l;
         }
+        if (!scene_.colors.empty()) {
+            const VertexColor vertex_color = vertex_color_at(scene_, hit.triangle, hit.u, hit.v);
+            shading.color *= vertex_color.color;
+            shading.alpha *= vertex_color.alpha;
+        }
         if (material.diffuse()) {
             p.throughput[l] *= shading.color;
         } else {
             if (material.metallic_roughness_texture >= 0) {
-                const auto texel =
-                    texels_.fetch(material.metallic_roughness_texture, texcoord_at(scene_, hit.triangle, hit.u, hit.v));
+                const TextureLookup lookup = material.metallic_roughness_lookup;
+                const auto texel = texels_.fetch(material.metallic_roughness_texture,
+                                                 texcoord_at(scene_, hit.triangle, hit.u, hit.v, lookup.layer), lookup);
                 roughness_element[l] = texel.element;
                 shading.roughness *= static_cast<float>(texel.stored[1]) / 255;
                 shading.metallic *= static_cast<float>(texel.stored[2]) / 255;
@@ -133,9 +150,10 @@ std::uint32_t PathIntegrator::shade(std::uint32_t mask, std::uint32_t vertex, Pa
     return alive;
 }
 
-std::uint32_t PathIntegrator::aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) const {
+std::uint32_t PathIntegrator::aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) {
     if (lights_.empty() || settings_.lights == LightSampling::bsdf) return 0;
-    std::uint32_t shadow = 0;
+    std::uint32_t shadow = 0, glowing = 0;
+    std::uint32_t glow_element[lanes];
     for_each(mask, [&](unsigned l) {
         const Surface& s = p.surface[l];
         const LightSample light = lights_.sample(s.position, pair(p.job[l], 2 + 4 * vertex));
@@ -151,13 +169,27 @@ std::uint32_t PathIntegrator::aim_at_light(std::uint32_t mask, std::uint32_t ver
         }
         p.contribution[l] = p.throughput[l] * light.radiance_over_pdf * f.value;
         if (!(max_component(p.contribution[l]) > 0)) return;
+        if (light.textured) {
+            const auto texel = emission_texel(*light.textured, light.triangle, light.u, light.v);
+            glow_element[l] = texel.element;
+            glowing |= 1U << l;
+            p.contribution[l] *= texel.color;
+            if (!(max_component(p.contribution[l]) > 0)) return;
+        }
         // No bounce ray will find the light where the path ends.
         if (weighs_both(diffuse) && may_go_on(p, l, vertex, is_transmission(s, light.direction)))
             p.contribution[l] = p.contribution[l] * power_heuristic(light.pdf, f.pdf);
         p.shadow_rays[l] = shadow_ray(s, light);
         shadow |= 1U << l;
     });
+    if (glowing != 0) traversal_.read_texels(glowing, type_of(vertex), static_cast<std::uint8_t>(vertex), glow_element);
     return shadow;
+}
+
+TexelLayout::Texel PathIntegrator::emission_texel(const Material& material, std::uint32_t triangle, float u,
+                                                  float v) const {
+    const TextureLookup lookup = material.emission_lookup;
+    return texels_.fetch(material.emission_texture, texcoord_at(scene_, triangle, u, v, lookup.layer), lookup);
 }
 
 void PathIntegrator::collect_light(std::uint32_t unblocked, PathLanes& p) const {

@@ -1,5 +1,5 @@
-// A path tracer, in megakernel order: camera rays; then per path vertex texel reads where the surface is textured, a
-// shadow ray, a bounce ray. Surfaces: Lambert's, done here, and those of bsdf/. Emitters, sun and sky: LightSampling.
+// A path tracer, in megakernel order: camera rays; then per path vertex texel reads where the surface is textured (of
+// its emission, where that counts; of what it reflects; of a textured light aimed at), a shadow ray, a bounce ray. Surfaces: Lambert's, done here, and those of bsdf/. Emitters, sun and sky: LightSampling.
 // Lanes that have left the scene or whose throughput is black stay idle until the warp ends.
 //
 // Dimensions of a sample, in pairs: (0,1) position in the pixel; vertex b = 0, 1, …: (2+4b, 3+4b) point on a light,
@@ -33,11 +33,11 @@ public:
 
     PathStages* stages() override { return this; }
     void generate(std::uint32_t mask, PathLanes&) const override;
-    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes&) const override;
+    std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes&) override;
     /// Diffuse surfaces multiply their reflectance in, and lanes on black ones end; the others leave
     /// PathLanes::shading.
     std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex, PathLanes&) override;
-    std::uint32_t aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes&) const override;
+    std::uint32_t aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes&) override;
     void collect_light(std::uint32_t unblocked, PathLanes&) const override;
     /// Paths end at their last vertex, where the direction points below the surface or nothing comes from it, and by
     /// roulette.
@@ -46,6 +46,8 @@ public:
 private:
     float number(const PathLane&, std::uint32_t dimension) const;
     Vec2 pair(const PathLane&, std::uint32_t dimension) const;
+    /// What the emission of a material is multiplied with at (u, v) of a triangle.
+    TexelLayout::Texel emission_texel(const Material&, std::uint32_t triangle, float u, float v) const;
     /// Whether light is sought by shadow and bounce rays both.
     bool weighs_both(bool diffuse) const;
     /// Whether there is a next vertex behind a bounce of this kind.
