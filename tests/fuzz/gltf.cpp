@@ -101,6 +101,8 @@ void check_scene(const Scene& scene) {
     for (const std::uint32_t i : scene.indices) fuzz::require(i < vertices, "indices name vertices");
     for (const std::uint16_t m : scene.material_of) fuzz::require(m < scene.materials.size(), "materials exist");
     for (const Vec3 p : scene.positions) fuzz::require(is_finite(p), "positions are finite");
+    fuzz::require(scene.colors.empty() || scene.colors.size() == vertices, "a colour per vertex");
+    for (const auto& layer : scene.more_texcoords) fuzz::require(layer.size() == vertices, "coordinates per vertex");
     for (const Material& m : scene.materials)
         fuzz::require(m.base_color_texture < static_cast<int>(scene.textures.size()), "textures exist");
 }

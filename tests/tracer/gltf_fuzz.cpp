@@ -43,7 +43,33 @@ GltfBuilder rich() {
     builder.node({{"mesh", first}, {"rotation", {0, 0, 0.6, 0.8}}});
     builder.node({{"mesh", second}, {"translation", {1, 2, 3}}, {"scale", {1, 2, 1}}});
     builder.node({{"camera", 0}, {"name", "eye"}});
-    builder.doc["scenes"] = {{{"nodes", {0, 3}}}};
+    const int moved = builder.floats({0, 1, 0, 0, 1, 0, 0, 1, 0}, "VEC3");
+    const int third = builder.mesh(
+        {{"attributes",
+          {{"POSITION", positions},
+           {"TEXCOORD_0", uv},
+           {"COLOR_0", builder.accessor(std::vector<std::uint8_t>(12, 128), "VEC4", 5121, true)},
+           {"JOINTS_0", builder.accessor(std::vector<std::uint8_t>{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 5121)},
+           {"WEIGHTS_0", builder.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5F, 0.5F, 0, 0}, "VEC4")}}},
+         {"targets", {{{"POSITION", moved}, {"NORMAL", moved}}}},
+         {"material", 2}});
+    builder.doc["meshes"].back()["weights"] = {0.25};
+    builder.add("materials",
+                {{"emissiveFactor", {1, 1, 1}},
+                 {"emissiveTexture",
+                  {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 1}}}}}}},
+                 {"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0, 1, 0, 1}}}}}}});
+    builder.node({{"mesh", third}, {"skin", 0}});
+    builder.node({{"mesh", third},
+                  {"weights", {1.0}},
+                  {"extensions",
+                   {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", moved}}}}},
+                    {"KHR_node_visibility", {{"visible", true}}},
+                    {"KHR_lights_punctual", {{"light", 0}}}}}});
+    builder.doc["skins"] = {{{"joints", {1, 2}}}};
+    builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"intensity", 2}, {"spot", {{"outerConeAngle", 0.5}}}}};
+    builder.doc["scenes"] = {{{"nodes", {0, 3, 4, 5}}}};
     builder.doc["scene"] = 0;
     return builder;
 }
@@ -55,7 +81,9 @@ void load_or_refuse(const std::string& path) {
         const std::size_t vertices = scene.positions.size();
         bool sound = scene.triangle_count() > 0 && scene.indices.size() == 3 * scene.triangle_count() &&
                      (scene.normals.empty() || scene.normals.size() == vertices) &&
-                     (scene.texcoords.empty() || scene.texcoords.size() == vertices) && !scene.cameras.empty();
+                     (scene.texcoords.empty() || scene.texcoords.size() == vertices) && !scene.cameras.empty() &&
+                     (scene.colors.empty() || scene.colors.size() == vertices);
+        for (const auto& layer : scene.more_texcoords) sound = sound && layer.size() == vertices;
         for (const std::uint32_t i : scene.indices) sound = sound && i < vertices;
         for (const std::uint16_t m : scene.material_of) sound = sound && m < scene.materials.size();
         for (const Vec3 p : scene.positions) sound = sound && is_finite(p);
@@ -72,7 +100,8 @@ void load_or_refuse(const std::string& path) {
 
 TEST_CASE("the file that is mutated below loads whole") {
     const auto [scene, warnings] = load(rich());
-    CHECK(scene.triangle_count() == 3);
+    CHECK(scene.triangle_count() == 7);
+    CHECK(scene.punctual_lights.size() == 1);
     CHECK(scene.textures.size() == 1);
     CHECK(scene.cameras[0].name == "eye");
     CHECK(warnings.empty());

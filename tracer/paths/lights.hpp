@@ -26,7 +26,7 @@ struct LightSample {
 
 class Lights {
 public:
-    explicit Lights(const Scene&);
+    explicit Lights(const Scene&);  ///< which must outlive it
 
     bool empty() const { return !sun_ && cumulative_.empty(); }
 
