@@ -12,7 +12,7 @@ namespace raycache::traces::format {
 
 using namespace std::string_view_literals;
 
-inline constexpr std::uint32_t version = 2;  ///< the newest
+inline constexpr std::uint32_t version = 3;  ///< the newest
 
 inline constexpr std::string_view file_magic = "RCTRACE\x1a"sv;
 inline constexpr std::string_view block_magic = "RCBLOCK\x1a"sv;
@@ -56,7 +56,7 @@ inline constexpr std::uint32_t max_kernels_per_launch = 1024;
 inline constexpr std::uint32_t max_elements = (1u << 30) - 1;
 inline constexpr std::uint32_t max_element_size = 4096;
 inline constexpr std::uint64_t region_alignment = 2u << 20;
-inline constexpr std::uint64_t max_address = std::uint64_t{1} << 48;
+inline constexpr std::uint64_t max_address = std::uint64_t{1} << 48;  ///< of a base
 inline constexpr unsigned max_degree = 16;
 inline constexpr std::uint64_t max_links = std::uint64_t{1} << 28;  ///< in one region
 inline constexpr std::uint32_t max_provenance_bytes = 1u << 16;

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "traces/object_kind.hpp"
+#include "traces/page_table.hpp"
 
 namespace raycache::traces {
 
 /// A link value that leads nowhere.
 inline constexpr std::uint32_t no_link = 0xffffffffu;
 
-/// An array of equal objects in the virtual memory of the imagined GPU.
+/// An array of equal objects in the virtual memory of the imagined GPU; or, with `pages`, the pages that a program used
+/// of all its memory, as if they lay one behind the other: then one region has objects however far apart.
 struct Region {
     ObjectKind kind = ObjectKind::node;
     std::uint64_t base = 0;          ///< byte address of element 0; a multiple of 2 MiB
@@ -26,7 +28,14 @@ struct Region {
     std::uint8_t degree = 0;
     std::vector<std::uint32_t> links;  ///< degree * count values
 
-    std::uint64_t address(std::uint32_t element) const { return base + std::uint64_t{element} * stride; }
+    /// Where not empty: element e lies at byte e * stride of these pages in a row. base and degree are 0 then, and the
+    /// stride is a power of two, at most a page, and may be less than the size of an element.
+    PageTable pages;
+
+    std::uint64_t address(std::uint32_t element) const {
+        const std::uint64_t byte = std::uint64_t{element} * stride;
+        return pages.empty() ? base + byte : pages.address(byte);
+    }
     bool operator==(const Region&) const = default;
 };
 

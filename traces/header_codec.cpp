@@ -7,6 +7,7 @@
 #include "traces/compression.hpp"
 #include "traces/format.hpp"
 #include "traces/link_table.hpp"
+#include "traces/page_codec.hpp"
 #include "traces/provenance.hpp"
 
 namespace raycache::traces {
@@ -22,7 +23,7 @@ void bound(const Origin& origin, const std::string& what, std::uint64_t value, s
 }
 
 /// The rules of header.hpp that need no link table. `at` is the offset of the region's entry.
-void check_region(const Region& region, unsigned index, std::uint32_t version, const Origin& at) {
+void check_region(const Region& region, bool paged, unsigned index, std::uint32_t version, const Origin& at) {
     const auto what = [&](const char* field) { return fmt::format("{} of region {}", field, index); };
     bound(at, what("kind"), static_cast<unsigned>(region.kind), 0, object_kinds_of(version) - 1);
     bound(at + 1, what("degree"), region.degree, 0, format::max_degree);
@@ -30,9 +31,10 @@ void check_region(const Region& region, unsigned index, std::uint32_t version, c
     bound(at + 8, what("base address"), region.base, 0, format::max_address);
     if (region.base % format::region_alignment != 0)
         refuse(at + 8, what("base address"), "a multiple of 2 MiB", hex64(region.base), recapture);
-    bound(at + 16, what("stride"), region.stride, region.element_size, 0xffffffffu);
+    if (!paged) bound(at + 16, what("stride"), region.stride, region.element_size, 0xffffffffu);
     bound(at + 20, what("count"), region.count, 0, format::max_elements);
     bound(at + 20, what("links"), std::uint64_t{region.degree} * region.count, 0, format::max_links);
+    if (paged) check_paged(region, index, at);
 }
 
 void check_counts(const Origin& origin, std::uint64_t regions, std::uint64_t launches, std::uint64_t warps) {
@@ -54,7 +56,10 @@ std::uint32_t version_of(const Header& header) {
     const bool plain = header.kernels_per_launch == 1 && header.provenance.execution == none.execution &&
                        header.provenance.order == none.order;
     std::uint32_t version = plain ? 1 : 2;
-    for (const Region& r : header.regions) version = std::max(version, is_known(r.kind) ? role_of(r.kind).version : 2);
+    for (const Region& r : header.regions) {
+        version = std::max(version, is_known(r.kind) ? role_of(r.kind).version : 2);
+        if (!r.pages.empty()) version = 3;
+    }
     return version;
 }
 
@@ -96,16 +101,18 @@ Bytes encode_header(const Header& header) {
     append(out, std::uint64_t{version == 1 ? 0 : header.kernels_per_launch});
     for (const std::uint32_t launch : header.launches) append(out, launch);
 
-    Bytes tables;
+    Bytes tables, pages;
     for (unsigned i = 0; i < header.regions.size(); ++i) {
         const Region& region = header.regions[i];
-        check_region(region, i, version, origin);
+        const bool paged = !region.pages.empty();
+        check_region(region, paged, i, version, origin);
         check_links(header, i);
+        if (paged) encode_pages(region, i, origin, pages);
         const EncodedLinks links = encode_links(region, i);
         append(out, static_cast<std::uint8_t>(region.kind));
         append(out, region.degree);
         append(out, static_cast<std::uint8_t>(links.prediction));
-        append(out, std::uint8_t{0});  // reserved
+        append(out, std::uint8_t{paged});
         append(out, region.element_size);
         append(out, region.base);
         append(out, region.stride);
@@ -116,6 +123,7 @@ Bytes encode_header(const Header& header) {
     }
     append(out, std::string_view(provenance));
     append(out, tables);
+    append(out, pages);
     store(out.data() + 16, static_cast<std::uint64_t>(out.size() + format::checksum_bytes));
     seal(out);
     return out;
@@ -179,10 +187,12 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin, M
                                   load<std::uint32_t>(entry + 16),
                                   load<std::uint32_t>(entry + 20),
                                   entry[1],
+                                  {},
                                   {}});
-        check_region(header.regions.back(), i, version, origin + at);
+        check_region(header.regions.back(), entry[3] == 1 && version >= 3, i, version, origin + at);
         bound(origin + at + 2, fmt::format("link prediction of region {}", i), entry[2], 0, link_predictions - 1);
-        if (entry[3] != 0) refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
+        if (entry[3] > (version >= 3 ? 1 : 0))
+            refuse(origin + at + 3, "reserved bits", "0", fmt::format("{:#04x}", entry[3]), recapture);
     }
     std::uint64_t link_bytes = 0;
     for (const Region& region : header.regions) link_bytes += sizeof(no_link) * region.degree * region.count;
@@ -200,6 +210,9 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin, M
         decode_links(header.regions, i, static_cast<LinkPrediction>(p[at + 2]), stored, origin + links);
         links += bytes;
     }
+    for (unsigned i = 0; i < regions; ++i)
+        if (p[table + format::region_bytes * i + 3] != 0)
+            links += decode_pages(header.regions[i], i, head.subspan(links, end - links), origin + links, budget);
     if (links != end)
         refuse(origin + links, "end of the head", fmt::format("offset {}", end), fmt::format("offset {}", links),
                recapture);

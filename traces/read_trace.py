@@ -41,9 +41,9 @@ class Trace:
         self.file = open(path, "rb").read()
         magic, version, reserved, size, regions, launches, self.warps_per_launch, text, kernels, reserved2 = (
             struct.unpack_from("<8sIIQIIIIII", self.file))
-        require(magic == b"RCTRACE\x1a" and version in (1, 2), "no trace of version 1 or 2")
-        require(reserved == 0 and reserved2 == 0 and (version == 2 or kernels == 0), "reserved bits set")
-        self.kernels_per_launch = kernels if version == 2 else 1
+        require(magic == b"RCTRACE\x1a" and version in (1, 2, 3), "no trace of version 1 to 3")
+        require(reserved == 0 and reserved2 == 0 and (version >= 2 or kernels == 0), "reserved bits set")
+        self.kernels_per_launch = kernels if version >= 2 else 1
         require(kernels > 0 or version == 1, "no kernel")
         require(self.warps_per_launch % self.kernels_per_launch == 0, "kernels of unequal size")
         check_sealed(self.file[:size], "head")
@@ -54,14 +54,23 @@ class Trace:
         at += text
         self.regions = []
         for i in range(regions):
-            names = "kind degree prediction reserved element_size base stride count link_bytes link_checksum".split()
+            names = "kind degree prediction paged element_size base stride count link_bytes link_checksum".split()
             region = dict(zip(names, struct.unpack_from("<BBBBIQIIQQ", self.file, entries + 40 * i)))
             stored = self.file[at:at + region["link_bytes"]]
             require(xxhash.xxh3_64_intdigest(stored) == region["link_checksum"], f"links of region {i}: wrong checksum")
             require(region["kind"] < (3 if version == 1 else 10), "unknown kind of object")
             region["links"] = self.links(region, i, stored)
             self.regions.append(region)
+            require(region["paged"] <= (version >= 3), "reserved bits set")
             at += region["link_bytes"]
+        for region in self.regions:
+            region["pages"] = []
+            if region["paged"]:
+                size_of_table, = struct.unpack_from("<Q", self.file, at)
+                count = -(-region["count"] * region["stride"] // 4096)
+                differences = np.frombuffer(unzip(self.file[at + 8:at + 8 + size_of_table], 8 * count), "<u8")
+                region["pages"] = np.cumsum(differences, dtype=np.uint64)
+                at += 8 + size_of_table
         require(at + 8 == size, "head: wrong size")
         index_size, _, end = struct.unpack("<QQ8s", self.file[-24:])
         require(end == b"RCEND..\x1a", "no end mark")
@@ -205,7 +214,8 @@ def dump(trace):
     for i, r in enumerate(trace.regions):
         links = xxhash.xxh3_64_hexdigest(np.array(r["links"], "<u4").tobytes())
         yield (f"region {i} kind {r['kind']} base {r['base']:#x} element_size {r['element_size']} stride {r['stride']} "
-               f"count {r['count']} degree {r['degree']} links {links}")
+               f"count {r['count']} degree {r['degree']} links {links}"
+               + (f" pages {xxhash.xxh3_64_hexdigest(np.array(r['pages'], '<u8').tobytes())}" if r["paged"] else ""))
     for launch, warp, records in trace.warps():
         yield f"launch {launch} warp {warp}"
         for mask, region, ray, bounce, elements in records:

@@ -26,6 +26,7 @@ Extent extent(const std::vector<traces::Region>& regions, std::size_t i) {
             fmt::format("region {} of the trace: expected an element size of 1 to 4096 bytes, found {}; "
                         "write the trace again",
                         i, region.element_size));
+    if (!region.pages.empty()) return {region.address(0), region.address(region.count - 1) + region.element_size - 1};
     // count - 1 and stride are below 2^32, so only the sum can overflow.
     const std::uint64_t span =
         std::uint64_t{std::max(region.count, 1u) - 1} * region.stride + (region.element_size - 1);
@@ -47,6 +48,11 @@ LineIds::LineIds(const std::vector<traces::Region>& regions, std::uint32_t line_
         const Extent bytes = extent(regions, i);
         lines.push_back({bytes.first >> shift, bytes.last >> shift});
         last_line_ = std::max(last_line_, lines.back().last);
+        dense_ &= regions[i].pages.empty();
+    }
+    if (!dense_) {
+        bound_ = most_ids;
+        return;
     }
     std::vector<std::size_t> order(regions.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

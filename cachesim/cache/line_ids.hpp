@@ -2,7 +2,8 @@
 //
 // Regions lie far apart in the address space, but together they hold few lines. Numbered without the gaps, a line fits
 // a 32-bit word, often together with its sectors, and a set of a cache fits few vector registers. Regions that share
-// lines share ids. Where regions have 2^32 lines or more, lines are numbered as they are first touched.
+// lines share ids. Where regions have 2^32 lines or more, or gaps (Region::pages), lines are numbered
+// as they are first touched.
 #pragma once
 
 #include <cstdint>

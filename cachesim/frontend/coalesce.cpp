@@ -90,7 +90,7 @@ void Coalescer::add_one(const WarpAccess& access, std::uint32_t number, Lookups&
         const std::uint64_t in_line = shape_.sectors - 1;
         const int line_of_sector = shape_.line_shift - shape_.sector_shift;
         for (unsigned lane = 0; lane < lanes; ++lane) {
-            const std::uint64_t first_byte = layout.base + access.elements[lane] * layout.stride;
+            const std::uint64_t first_byte = layout.address(access.elements[lane]);
             const std::uint64_t first = first_byte >> shape_.sector_shift,
                                 last = (first_byte + layout.extra) >> shape_.sector_shift;
             const std::uint64_t last_line = last >> line_of_sector;

@@ -31,8 +31,7 @@ LoadCounter::Loads LoadCounter::make(const traces::Region& region, const FrontEn
         loads.requests_per_element = 1;
         return loads;
     }
-    loads.base = region.base;
-    loads.stride = region.stride;
+    loads.region = {region.kind, region.base, region.element_size, region.stride, region.count, 0, {}, region.pages};
     loads.bytes = std::min(front_end.load_bytes, std::bit_ceil(region.element_size));
     loads.count = (region.element_size + loads.bytes - 1) / loads.bytes;
     loads.last_bytes = region.element_size - (loads.count - 1) * loads.bytes;
@@ -92,7 +91,7 @@ unsigned LoadCounter::general(const Loads& loads, std::uint32_t mask, const std:
             auto* end = sectors.data();
             const std::uint64_t extra = (k + 1 == loads.count ? loads.last_bytes : loads.bytes) - 1;
             for (unsigned i = 0; i < lanes; ++i) {
-                const std::uint64_t first = loads.base + elements[i] * loads.stride + std::uint64_t{k} * loads.bytes;
+                const std::uint64_t first = loads.region.address(elements[i]) + std::uint64_t{k} * loads.bytes;
                 for (std::uint64_t s = first >> sector_shift_; s <= (first + extra) >> sector_shift_; ++s) *end++ = s;
             }
             std::sort(sectors.data(), end);

@@ -56,7 +56,7 @@ private:
         std::uint32_t lanes_per_request = 32;
         std::uint32_t requests_per_element = 0;
         int sectors_shift = 0;  ///< from_sectors: log2 of sectors per element
-        std::uint64_t base = 0, stride = 0;
+        traces::Region region;  ///< without links
     };
 
     static Loads make(const traces::Region&, const FrontEnd&, const LineShape&);

@@ -35,6 +35,7 @@ struct RegionLayout {
         : base(r.base),
           stride(r.stride),
           extra(r.element_size - 1),
+          pages(r.pages),
           aligned(r.base % shape.line_bytes == 0 && r.stride && shape.line_bytes % r.stride == 0 &&
                   r.element_size <= r.stride),
           start(static_cast<std::uint32_t>(r.base % shape.line_bytes)) {
@@ -51,7 +52,14 @@ struct RegionLayout {
         if (few_per_line) std::copy(sectors.begin(), sectors.end(), table.begin());
     }
 
-    std::uint64_t base, stride, extra;   ///< extra: element size - 1
+    /// First byte of an element.
+    std::uint64_t address(std::uint32_t element) const {
+        const std::uint64_t byte = element * stride;
+        return pages.empty() ? base + byte : pages.address(byte);
+    }
+
+    std::uint64_t base, stride, extra;  ///< extra: element size - 1
+    traces::PageTable pages;
     std::uint32_t first_id = 0;          ///< of the line of element 0, where ids are dense
     bool aligned;                        ///< a power of two of elements to a line, none straddles
     int elements_shift = 0;              ///< aligned: log2 of elements per line

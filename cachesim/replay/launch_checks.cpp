@@ -27,7 +27,7 @@ std::vector<traces::Region> checked(const std::vector<traces::Region>& regions) 
                 fmt::format("region {} of the trace: expected an object kind of 0 to {}, found {}; write the "
                             "trace again",
                             copies.size(), traces::object_kinds - 1, static_cast<unsigned>(r.kind)));
-        copies.push_back({r.kind, r.base, r.element_size, r.stride, r.count, 0, {}});
+        copies.push_back({r.kind, r.base, r.element_size, r.stride, r.count, 0, {}, r.pages});
     }
     return copies;
 }

@@ -17,9 +17,10 @@ class AccelSim(ProgramTest):
         expected = self.totals(trace)
         for target, kernel in (("folder", "folder/kernel-1.traceg"), ("k.traceg.xz", "k.traceg.xz")):
             self.succeeds("export", trace, "--format", "accel-sim", "--warps-per-cta", "7", "-o", target)
-            self.succeeds("import", kernel, "--fuse", "-o", "back.rct")
-            self.assertEqual(self.totals("back.rct"), expected)
-        self.succeeds("import", "k.traceg.xz", "-o", "back.rct")
+            for fused in ([], ["--fuse"]):  # registers show that the loads of an object are independent
+                self.succeeds("import", kernel, *fused, "-o", "back.rct")
+                self.assertEqual(self.totals("back.rct"), expected)
+        self.succeeds("import", "k.traceg.xz", "--no-fuse", "-o", "back.rct")
         split = self.totals("back.rct")
         self.assertEqual([split[key] for key in ("loads", "l1_requests")],
                          [expected[key] for key in ("loads", "l1_requests")])
@@ -37,6 +38,53 @@ class AccelSim(ProgramTest):
             self.refuses(1, "import", "bad.traceg", "-o", "bad.rct", mentions=["bad.traceg: line 12: "])
         self.path("cut.traceg").write_text(HEAD + begin + load)
         self.refuses(1, "import", "cut.traceg", "-o", "bad.rct", mentions=["#END_TB"])
+
+    def kernel(self, *lines):
+        return (HEAD + f"#BEGIN_TB\nthread block = 0,0,0\nwarp = 0\ninsts = {len(lines)}\n" + "".join(l + "\n" for l in lines) +
+                "#END_TB\n")
+
+    def test_a_load_whose_lanes_lie_far_apart_is_one_load_in_every_replay(self):
+        for opcode in ("LDG.E.U8", "LDG.E", "LDG.E.128"):
+            self.path("k.traceg").write_text(self.kernel(f"0 3 1 R4 {opcode} 1 R2 4 0 0x7f0000000000 0xff00000000000000 0"))
+            self.succeeds("import", "k.traceg", "-o", "k.rct")
+            self.assertEqual([self.totals("k.rct")[key] for key in ("loads", "warp_accesses", "lane_accesses", "sectors")], [1, 1, 2, 2])
+            row = self.succeeds("replay", "k.rct", "--gpu", "rtx-3070", "--timed", "--json").json["rows"][0]
+            self.assertEqual([row["loads"], row["l1"]["requests"], row["dram_sectors"]], [1, 2, 2])
+            self.succeeds("export", "k.rct", "--format", "accel-sim", "-o", "again.traceg")
+            self.succeeds("import", "again.traceg", "-o", "k.rct")
+            self.assertEqual(self.totals("k.rct")["sectors"], 2)
+
+    def test_lanes_of_address_0_are_warned_about_and_left_out_as_asked(self):
+        self.path("k.traceg").write_text(self.kernel("0 3 1 R4 LDG.E 1 R2 4 0 0x1000 0x0 0", "10 3 1 R4 LDG.E 1 R2 4 0 0x0 0x0 0"))
+        for options, expected in (([], [1, 2]), (["--null-lanes", "drop-lanes"], [1, 1]), (["--null-lanes", "keep"], [2, 4])):
+            result = self.succeeds("import", "k.traceg", *options, "-o", "k.rct")
+            self.assertIn("3 lanes of 2 loads read address 0", result.stderr)
+            self.assertEqual([self.totals("k.rct")[key] for key in ("loads", "lane_accesses")], expected)
+
+    def test_a_list_of_kernels_is_a_launch_a_kernel(self):
+        self.path("traces").mkdir()
+        for i in (1, 2):
+            self.path(f"traces/kernel-{i}.traceg").write_text(self.kernel(f"0 1 1 R4 LDG.E 1 R2 4 0 {4096 * i:#x} 0"))
+        self.path("traces/kernelslist.g").write_text("MemcpyHtoD,0x1000,4\nkernel-1.traceg\nkernel-2.traceg\n")
+        for name in ("traces", "traces/kernelslist.g"):
+            self.succeeds("import", name, "-o", "k.rct")
+            self.assertEqual(self.totals("k.rct")["loads"], 2)
+
+    def test_addresses_are_guessed_or_named_and_other_files_refused_by_what_they_look_like(self):
+        self.path("a.din").write_text("0 7f5000000000\n0 7f5000000020\n1 7f5000000040\n")
+        result = self.succeeds("import", "a.din", "-o", "a.rct")
+        self.assertIn("1 writes and 0 instruction fetches are left out", result.stderr)
+        self.assertEqual(self.totals("a.rct")["loads"], 2)
+        self.path("a.csv").write_text("time,obj,size\n1,0x7f50,32\n2,0x7f51,32\n")
+        self.succeeds("import", "a.csv", "-o", "a.rct")
+        self.path("words").write_bytes(bytes(8) + (1 << 40).to_bytes(8, "little"))
+        self.refuses(1, "import", "words", "-o", "a.rct", mentions=["--format u64"])
+        self.succeeds("import", "words", "--format", "u64", "-o", "a.rct")
+        self.path("a.lackey").write_text("I  04001090,3\n L 1ffefffe50,8\n")
+        self.refuses(1, "import", "a.lackey", "-o", "a.rct", mentions=["Lackey", "din, csv, u64"])
+        self.refuses(2, "import", "a.din", "--fuse", "-o", "a.rct", mentions=["expected an Accel-Sim trace"])
+        self.refuses(2, "export", "a.rct", "--format", "accel-sim", "--binary-version", "121", "-o", "x", mentions=["120"])
+        self.succeeds("export", "a.rct", "--format", "accel-sim", "--binary-version", "120", "-o", "x.traceg")
 
 
 if __name__ == "__main__":

@@ -27,9 +27,9 @@ std::string kernel(const std::string& ctas, unsigned grid = 1, unsigned block = 
         grid, block, head, ctas);
 }
 
-std::string cta(const std::vector<std::string>& instructions, unsigned warp = 0) {
+std::string cta(const std::vector<std::string>& instructions, unsigned warp = 0, unsigned x = 0) {
     std::string text =
-        fmt::format("#BEGIN_TB\nthread block = 0,0,0\nwarp = {}\ninsts = {}\n", warp, instructions.size());
+        fmt::format("#BEGIN_TB\nthread block = {},0,0\nwarp = {}\ninsts = {}\n", x, warp, instructions.size());
     for (const std::string& line : instructions) text += line + '\n';
     return text + "#END_TB\n";
 }
@@ -101,7 +101,8 @@ TEST_CASE("the width of a load comes from its opcode") {
     CHECK(bytes("LDG.E.128.CONSTANT.SYS") == 16);
     CHECK(bytes("LDG.E.U8.SYS") == 1);
     CHECK(bytes("LDG.E.S16.SYS") == 2);
-    CHECK_THAT(c.refused(kernel(cta({"0 1 1 R4 LDG.E.256.SYS 1 R4 4 0 0x1000 0"}))), Contains("LDG.E.256.SYS"));
+    CHECK(bytes("LDG.E.ENL2.256.CONSTANT") == 32);
+    CHECK_THAT(c.refused(kernel(cta({"0 1 1 R4 LDG.E.512.SYS 1 R4 4 0 0x1000 0"}))), Contains("LDG.E.512.SYS"));
 }
 
 TEST_CASE("what is no global load is counted by its opcode, and what has no active lane is no access") {
@@ -133,11 +134,35 @@ TEST_CASE("a warp's number is that of its CTA times the warps of a CTA plus its 
     CHECK(loads[1].warp == 3);
 }
 
-TEST_CASE("a grid with fewer or more CTAs than announced is refused") {
+TEST_CASE("thread blocks that the file leaves out have no loads, and those it has keep their numbers") {
+    Case c;
+    const std::string load = "0 1 1 R4 LDG.E.SYS 1 R4 4 0 0x1000 0";
+    const auto loads = c.parse(kernel(cta({load}) + cta({load}, 0, 2), 4));
+    REQUIRE(loads.size() == 2);
+    CHECK(loads[0].warp == 0);
+    CHECK(loads[1].warp == 2);
+    CHECK(c.found.ctas == 4);
+    CHECK(c.found.empty_ctas == 2);
+}
+
+TEST_CASE("a file with more thread blocks than the grid, with none, or with some of them in disorder is refused") {
     Case c;
     const std::string one = cta({"0 1 1 R4 LDG.E.SYS 1 R4 4 0 0x1000 0"});
-    CHECK_THAT(c.refused(kernel(one, 2)), Contains("k.traceg: ") && Contains("2") && Contains("1"));
     CHECK_THAT(c.refused(kernel(one + one, 1)), Contains("no more than 1"));
+    CHECK_THAT(c.refused(kernel("", 2)), Contains("thread blocks of a grid of 2, found none"));
+    CHECK_THAT(c.refused(kernel(cta({}, 0, 2) + one, 3)),
+               Contains("3 thread blocks") && Contains("2 in another order"));
+    CHECK_THAT(c.refused(kernel(cta({}, 0, 3), 3)), Contains("below 3,1,1"));
+}
+
+TEST_CASE("a file with all thread blocks in another order numbers them by their places") {
+    Case c;
+    const std::string load = "0 1 1 R4 LDG.E.SYS 1 R4 4 0 0x1000 0";
+    write_text(c.path, kernel(cta({load}, 0, 1) + cta({load}, 0, 0), 2));
+    std::vector<std::uint64_t> warps;
+    CHECK_FALSE(parse_traceg(c.path, [&](std::uint64_t, GlobalLoad&) {}).in_order);
+    parse_traceg(c.path, [&](std::uint64_t warp, GlobalLoad&) { warps.push_back(warp); }, {NullLanes::keep, true});
+    CHECK(warps == std::vector<std::uint64_t>{0, 1});
 }
 
 TEST_CASE("a compressed trace that is cut or damaged anywhere is refused, and the whole one reads like the plain one") {
@@ -178,7 +203,7 @@ TEST_CASE("a compressed trace that is cut or damaged anywhere is refused, and th
 
 TEST_CASE("loads that read on become one object, up to 4096 bytes") {
     Case c;
-    const auto objects = [&](unsigned loads, unsigned step, bool fuse) {
+    const auto objects = [&](unsigned loads, unsigned step, Fuse fuse) {
         std::vector<std::string> instructions;
         for (unsigned i = 0; i < loads; ++i)
             instructions.push_back(fmt::format("{:x} 3 1 R4 LDG.E.128.SYS 1 R4 16 0 {:#x} {:#x} 0", 16 * i,
@@ -196,9 +221,9 @@ TEST_CASE("loads that read on become one object, up to 4096 bytes") {
             if (record.is_access()) sizes.push_back(reader.header().regions[record.region].element_size);
         return sizes;
     };
-    CHECK(objects(4, 16, true) == std::vector<std::uint32_t>{64});
-    CHECK(objects(4, 16, false) == std::vector<std::uint32_t>{16, 16, 16, 16});
-    CHECK(objects(4, 32, true) == std::vector<std::uint32_t>{16, 16, 16, 16});
-    CHECK(objects(256, 16, true) == std::vector<std::uint32_t>{4096});
-    CHECK(objects(257, 16, true) == std::vector<std::uint32_t>{4096, 16});
+    CHECK(objects(4, 16, Fuse::always) == std::vector<std::uint32_t>{64});
+    CHECK(objects(4, 16, Fuse::never) == std::vector<std::uint32_t>{16, 16, 16, 16});
+    CHECK(objects(4, 32, Fuse::always) == std::vector<std::uint32_t>{16, 16, 16, 16});
+    CHECK(objects(256, 16, Fuse::always) == std::vector<std::uint32_t>{4096});
+    CHECK(objects(257, 16, Fuse::always) == std::vector<std::uint32_t>{4096, 16});
 }

@@ -32,8 +32,11 @@ std::string dump_trace(const std::string& path) {
         const Region& r = header.regions[i];
         Bytes links;
         for (const auto link : r.links) append(links, link);
-        text += fmt::format("region {} kind {} base {:#x} element_size {} stride {} count {} degree {} links {:016x}\n",
+        text += fmt::format("region {} kind {} base {:#x} element_size {} stride {} count {} degree {} links {:016x}",
                             i, unsigned(r.kind), r.base, r.element_size, r.stride, r.count, r.degree, checksum(links));
+        Bytes pages;
+        for (const auto page : r.pages.numbers()) append(pages, page);
+        text += pages.empty() ? "\n" : fmt::format(" pages {:016x}\n", checksum(pages));
     }
     std::vector<WarpTrace> warps;
     for (std::size_t i = 0; i < reader.blocks().size(); ++i) {

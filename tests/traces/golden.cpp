@@ -39,6 +39,22 @@ Sample example() {
     return sample;
 }
 
+/// Lanes that read objects of one region of pages far apart: 4 bytes at multiples of 2, the last one across two pages.
+Sample pages() {
+    Sample sample;
+    sample.header.provenance.program = "pages";
+    sample.header.launches = {0};
+    sample.header.warps_per_launch = 1;
+    constexpr std::uint64_t last = ~std::uint64_t{0} >> PageTable::page_bits;
+    Region region{ObjectKind::node, 0, 4, 2, 3 * 2048 - 1, 0, {}, PageTable({1, 0x7f5000000, last})};
+    sample.header.regions = {region};
+    WarpTrace warp{0, 0, {}, {0, 2048, 6142, 2047}};
+    warp.records.push_back({15, ray_start, RayType::camera, 0, 0});
+    warp.records.push_back({15, 0, RayType::camera, 0, 0});
+    sample.warps = {warp};
+    return sample;
+}
+
 struct Good {
     std::string name;
     std::function<Sample()> make;
@@ -67,6 +83,7 @@ std::vector<Good> good_files() {
          [] {
              return wavefront_buffers({5, 0, 0, 2, 2});
          }},
+        {"pages", pages},
     };
 }
 
@@ -100,10 +117,10 @@ std::vector<Bad> bad_files() {
         {"empty", [](Bytes& b) { b.clear(); }, "offset 0: magic: expected RCTRACE, found an empty file"},
         {"wrong-magic", [](Bytes& b) { b[0] = 'X'; },
          "offset 0: magic: expected RCTRACE, found other bytes; this is no raycache trace"},
-        {"newer-version", [](Bytes& b) { b[8] = 3; },
-         "offset 8: format version: expected at most 2, found 3; this raycache reads version 2: install a newer one to "
-         "read version 3"},
-        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 2, found 0"},
+        {"newer-version", [](Bytes& b) { b[8] = 4; },
+         "offset 8: format version: expected at most 3, found 4; this raycache reads version 3: install a newer one to "
+         "read version 4"},
+        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 3, found 0"},
         {"reserved-bit", head(12, 1), "offset 12: reserved bits: expected 0, found 0x00000001"},
         {"region-reserved-bit", head(region0 + 3, 1), "offset 55: reserved bits: expected 0, found 0x01"},
         {"flipped-head", [](Bytes& b) { b[140] ^= 1; }, "offset 0: checksum of the head"},

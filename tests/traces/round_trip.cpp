@@ -67,6 +67,39 @@ TEST_CASE("only a trace that needs version 2 is one") {
     CHECK(version(wavefront_buffers({})) == 2);
 }
 
+TEST_CASE("a region of pages is of version 3, and says where its elements lie") {
+    const TemporaryFolder folder;
+    Sample sample = texel_reads({1, 0, 0, 1, 1});
+    Region& region = sample.header.regions[0];
+    const auto write = [&](Region changed) {
+        sample.header.regions[0] = changed;
+        write_sample(sample, folder / "sample.rct");
+        return load<std::uint32_t>(read_file(folder / "sample.rct").data() + 8);
+    };
+    Region paged = region;
+    paged.base = 0;
+    paged.stride = 4;
+    std::vector<std::uint64_t> numbers((std::uint64_t{paged.count} * paged.stride + 4095) / 4096);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = 7 + i * 0x100000001;
+    paged.pages = PageTable(numbers);
+    CHECK(write(paged) == 3);
+    CHECK(Reader(folder / "sample.rct").header() == sample.header);
+    CHECK(paged.address(1025) == (numbers[1] << 12) + 4);
+    const auto refused = [&](auto change) {
+        Region changed = paged;
+        change(changed);
+        return refusal([&] { write(changed); });
+    };
+    CHECK_THAT(refused([](Region& r) { r.base = 2u << 20; }), Contains("base address"));
+    CHECK_THAT(refused([](Region& r) { r.stride = 12; }), Contains("a power of two"));
+    CHECK_THAT(refused([](Region& r) { r.pages = PageTable({1}); }), Contains("pages of region 0"));
+    CHECK_THAT(refused([&](Region& r) {
+                   std::swap(numbers[0], numbers[1]);
+                   r.pages = PageTable(numbers);
+               }),
+               Contains("page 1 of region 0"));
+}
+
 TEST_CASE("texel reads come back exactly") { check_round_trip(texel_reads({}), 2); }
 
 TEST_CASE("a deep tree, a single node and a region without elements come back exactly") {

@@ -166,8 +166,12 @@ void add_export(Program& program) {
     command->group("Accel-Sim");
     command->add_option("--warps-per-cta", o->traceg.warps_per_cta, "consecutive warps that form a CTA")
         ->range(std::uint64_t{1}, std::uint64_t{32});
-    command->add_option("--binary-version", o->traceg.binary_version, "61 Pascal, 70 Volta, 75 Turing, 80 or 86 Ampere")
-        ->choices("binary version", {"61", "70", "75", "80", "86"});
+    command
+        ->add_option(
+            "--binary-version", o->traceg.binary_version,
+            "compute capability: 60 to 62 Pascal, 70 Volta, 75 Turing, 80 to 87 Ampere, 89 Ada, 90 Hopper, 100 "
+            "to 120 Blackwell")
+        ->range(std::uint64_t{60}, std::uint64_t{120});
     command->group("");
     command->examples(
         {"raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv",

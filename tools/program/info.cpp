@@ -37,6 +37,9 @@ nlohmann::ordered_json as_json(const traces::Reader& reader, const Totals& total
                                   {"element_bytes", r.element_size},
                                   {"stride", r.stride},
                                   {"count", r.count}});
+    for (std::size_t i = 0; i < out["regions"].size(); ++i)
+        if (const auto& pages = reader.header().regions[i].pages; !pages.empty())
+            out["regions"][i]["pages"] = pages.count();
     out["rays"] = totals.rays;
     out["records"] = totals.records;
     out["lane_accesses"] = totals.lane_accesses;
@@ -80,8 +83,11 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
     line("sample indices", fmt::format("{}", fmt::join(h.launches, " ")));
     count("warps per launch", h.warps_per_launch);
     for (const traces::Region& r : h.regions)
-        line("region", fmt::format("{} x {} of {} B, stride {} B, at {:#x}", r.count, traces::name_of(r.kind),
-                                   r.element_size, r.stride, r.base));
+        line("region",
+             fmt::format("{} x {} of {} B, stride {} B, {}", r.count, traces::name_of(r.kind), r.element_size, r.stride,
+                         r.pages.empty()
+                             ? fmt::format("at {:#x}", r.base)
+                             : fmt::format("in {} pages of {} B", r.pages.count(), traces::PageTable::page_bytes)));
     count("rays", totals.rays);
     count("records", totals.records);
     count("lane accesses", totals.lane_accesses);

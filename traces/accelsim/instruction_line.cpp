@@ -11,10 +11,24 @@
 namespace raycache::traces {
 namespace {
 
+constexpr unsigned most_destinations = 1, most_sources = 8;
+constexpr std::uint64_t window_bytes = std::uint64_t{1} << 24;  // of generic addresses that lead to other memory
+
+/// "R4", "UR4", "P0", "UP0", "RZ", "PT".
+bool is_register(std::string_view word) {
+    if (word.starts_with('U')) word.remove_prefix(1);
+    if (word == "RZ" || word == "PT") return true;
+    if (!word.starts_with('R') && !word.starts_with('P')) return false;
+    return word.size() > 1 && word.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+/// Bulk copies of the tensor memory accelerator, whose addresses have a form of their own.
+bool is_bulk_copy(std::string_view opcode) { return opcode.starts_with("UTMA") || opcode.starts_with("UBLK"); }
+
 /// The words of a line, one after the other.
 class Words {
 public:
-    Words(std::string_view line, const TextLines& lines) : rest_(line), lines_(lines) {}
+    Words(std::string_view line, const TextPlace& lines) : rest_(line), lines_(lines) {}
 
     bool empty() {
         rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size()));
@@ -40,22 +54,26 @@ public:
         return value;
     }
 
-    void registers(const char* what, unsigned most) {
+    /// Those that are R and a number are added to `found`, if it is given.
+    void registers(const char* what, unsigned most, RegisterSet* set = nullptr) {
         const auto count = number<unsigned>(what, 10);
         if (count > most) lines_.refuse(what, fmt::format("at most {}", most), fmt::format("{}", count));
         for (unsigned i = 0; i < count; ++i) {
             const std::string_view found = word("register");
-            if (found[0] != 'R') lines_.refuse("register", "R and a number", found);
+            if (!is_register(found)) lines_.refuse("register", "R, UR or P and a number", found);
+            unsigned number = 0;
+            const auto [end, error] = std::from_chars(found.data() + 1, found.data() + found.size(), number);
+            if (set && found[0] == 'R' && error == std::errc{} && number < set->size()) set->set(number);
         }
     }
 
 private:
     std::string_view rest_;
-    const TextLines& lines_;
+    const TextPlace& lines_;
 };
 
 /// The widest number in the opcode's parts, in bits: 128 in LDG.E.128, 16 in LDG.E.U16; 32 bits without one.
-std::uint32_t access_bytes(std::string_view opcode, const TextLines& lines) {
+std::uint32_t access_bytes(std::string_view opcode, const TextPlace& lines) {
     std::uint32_t bits = 32;
     for (std::string_view rest = opcode; !rest.empty();) {
         std::string_view part = rest.substr(0, rest.find('.'));
@@ -65,12 +83,12 @@ std::uint32_t access_bytes(std::string_view opcode, const TextLines& lines) {
         const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
         if (error == std::errc{} && end == part.data() + part.size()) bits = number;
     }
-    if (bits < 8 || bits > 128 || !std::has_single_bit(bits))
-        lines.refuse("width in the opcode", "8, 16, 32, 64 or 128 bits", opcode);
+    if (bits < 8 || bits > 256 || !std::has_single_bit(bits))
+        lines.refuse("width in the opcode", "8, 16, 32, 64, 128 or 256 bits", opcode);
     return bits / 8;
 }
 
-void read_addresses(Words& words, const TextLines& lines, std::uint32_t mask, std::vector<std::uint64_t>& out) {
+void read_addresses(Words& words, const TextPlace& lines, std::uint32_t mask, std::vector<std::uint64_t>& out) {
     const auto mode = words.number<unsigned>("address mode", 10);
     const auto lanes = static_cast<unsigned>(std::popcount(mask));
     out.clear();
@@ -89,31 +107,61 @@ void read_addresses(Words& words, const TextLines& lines, std::uint32_t mask, st
                           : out.back() + static_cast<std::uint64_t>(words.number<std::int64_t>("difference", 10)));
 }
 
+/// Whether a load of this opcode reads global memory; a generic one does where its address says so.
+bool reads_global(std::string_view opcode, const InstructionGrammar& grammar, std::uint64_t address) {
+    const std::string_view name = opcode.substr(0, opcode.find('.'));
+    if (name == "LDG" || name == "LDGSTS") return true;
+    const auto inside = [&](std::uint64_t window) { return window != 0 && address - window < window_bytes; };
+    return name == "LD" && !inside(grammar.shared_window) && !inside(grammar.local_window);
+}
+
 }  // namespace
 
-InstructionLine parse_instruction(std::string_view line, bool line_numbers, const TextLines& lines, GlobalLoad& load) {
-    Words words(line, lines);
-    if (line_numbers) words.number<std::uint64_t>("source line", 10);
+InstructionLine parse_instruction(std::string_view line, const InstructionGrammar& grammar, const TextPlace& place,
+                                  GlobalLoad& load) {
+    Words words(line, place);
+    for (unsigned i = 0; i < grammar.numbers_before; ++i) words.number<std::uint64_t>("number before it", 10);
     load.pc = words.number<std::uint64_t>("program counter", 16);
     load.mask = words.number<std::uint32_t>("mask", 16);
-    words.registers("number of destinations", 1);
+    load.written.reset();
+    load.read.reset();
+    words.registers("number of destinations", most_destinations, &load.written);
     InstructionLine found;
     found.opcode = words.word("opcode");
-    words.registers("number of sources", 4);
+    if (is_bulk_copy(found.opcode)) {
+        found.has_addresses = load.mask != 0;
+        return found;
+    }
+    words.registers("number of sources", most_sources, &load.read);
     const auto width = words.number<unsigned>("memory width", 10);
     found.has_addresses = width != 0 && load.mask != 0;
-    found.is_load = found.has_addresses && found.opcode.substr(0, found.opcode.find('.')) == "LDG";
     if (!found.has_addresses) return found;  // what follows has no meaning here
-    read_addresses(words, lines, load.mask, load.addresses);
+    read_addresses(words, place, load.mask, load.addresses);
     if (!words.empty()) words.word("immediate");
-    if (!words.empty()) lines.refuse("end of the instruction", "an immediate and no more", words.word(""));
+    if (!words.empty() && grammar.version < 6)
+        place.refuse("end of the instruction", "an immediate and no more", words.word(""));
+    found.is_load = reads_global(found.opcode, grammar, load.addresses.front());
     if (!found.is_load) return found;
-    load.bytes = access_bytes(found.opcode, lines);
+    load.bytes = access_bytes(found.opcode, place);
+    constexpr std::uint32_t register_bytes = 4;
+    const RegisterSet first = load.written;
+    for (std::uint32_t r = 1; r < load.bytes / register_bytes; ++r) load.written |= first << r;
+    load.read |= load.read << 1;
     for (const std::uint64_t address : load.addresses)
-        if (address % load.bytes != 0 || address >> 48 != 0)
-            lines.refuse("address", fmt::format("a multiple of {} below 2^48", load.bytes),
-                         fmt::format("{:#x}", address));
+        if (address % load.bytes != 0)
+            place.refuse("address", fmt::format("a multiple of {}", load.bytes), fmt::format("{:#x}", address));
     return found;
+}
+
+unsigned count_numbers_before(std::string_view line) {
+    constexpr unsigned own = 3;  // program counter, mask, number of destinations
+    unsigned count = 0;
+    for (std::string_view rest = line;; ++count) {
+        rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+        if (rest.empty()) return 0;
+        if (rest[0] >= 'A' && rest[0] <= 'Z') return count < own ? 0 : count - own;
+        rest.remove_prefix(std::min(rest.find_first_of(" \t"), rest.size()));
+    }
 }
 
 }  // namespace raycache::traces

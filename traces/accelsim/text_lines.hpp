@@ -1,31 +1,33 @@
-// The lines of a text file, plain or compressed by xz, whatever its name.
+// The lines of a text file, plain or compressed by xz, gzip or zstd, whatever its name.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 
+#include "traces/accelsim/byte_source.hpp"
+#include "traces/accelsim/text_place.hpp"
+
 namespace raycache::traces {
 
-class TextLines {
+class TextLines : public TextPlace {
 public:
     /// Throws Error if the file cannot be read.
-    explicit TextLines(const std::string& path);
-    ~TextLines();
-    TextLines(const TextLines&) = delete;
-    TextLines& operator=(const TextLines&) = delete;
+    explicit TextLines(const std::string& path) : path_(path), source_(path) {}
 
     /// The next line without its end; false after the last. Throws Error if the compressed data are damaged or cut
     /// short, or if a line has more than a million characters. `line` is valid until the next call.
     bool next(std::string_view& line);
 
-    /// Throws Error: "PATH: line N: WHAT: expected …, found …; REMEDY", N being the line that next() gave last.
-    [[noreturn]] void refuse(std::string_view what, std::string_view expected, std::string_view found) const;
+    /// "PATH: line N", N being the line that next() gave last.
+    std::string where() const override;
 
 private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::string path_;
+    ByteSource source_;
+    std::string text_;  ///< not yet given, from `at_` on
+    std::size_t at_ = 0;
+    std::uint64_t line_ = 0;
 };
 
 }  // namespace raycache::traces

@@ -20,7 +20,7 @@ namespace raycache::traces {
 
 struct TracegSettings {
     std::uint32_t warps_per_cta = 4;    ///< 1 to 32
-    std::uint32_t binary_version = 86;  ///< compute capability: 61 Pascal, 70 Volta, 75 Turing, 80 and 86 Ampere
+    std::uint32_t binary_version = 86;  ///< compute capability: 61 Pascal, 70 Volta, 75 Turing, 86 Ampere, …
 };
 
 class TracegText {

@@ -10,11 +10,12 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
 #include <vector>
 
+#include "traces/accelsim/byte_source.hpp"
 #include "traces/error.hpp"
 #include "traces/format.hpp"
-#include "traces/input_file.hpp"
 #include "traces/memory_budget.hpp"
 #include "traces/writer.hpp"
 
@@ -197,13 +198,8 @@ void align(Region& region, std::vector<WarpTrace>& warps, std::uint8_t number, I
 }  // namespace
 
 bool looks_like_rtwarp(const std::string& path) {
-    const InputFile ordinary(path);  // a pipe cannot be read twice
-    std::ifstream file(path, std::ios::binary);
-    char start[8] = {};
-    file.read(start, sizeof start);
-    std::uint32_t word = 0;
-    std::memcpy(&word, start, sizeof word);
-    return word == zstd_magic || std::memcmp(start, magic, sizeof start) == 0;
+    constexpr std::size_t bytes = 8;
+    return first_bytes(path, bytes) == std::string_view(magic, bytes);
 }
 
 void import_rtwarp(const std::string& input, const std::string& output, const std::string& program,

@@ -12,7 +12,7 @@
 
 namespace raycache::traces {
 
-/// Whether the file starts as an RTWARP01 or as a zstd file does.
+/// Whether the content, decompressed where it is, starts as an RTWARP01 trace does.
 bool looks_like_rtwarp(const std::string& path);
 
 /// Writes `output`. `program` and `command` are for Provenance. Throws Error if the file is no whole RTWARP01 trace.

@@ -24,6 +24,7 @@ struct LoadShape {
               const LineIds& ids)
         : base(region.base),
           stride(region.stride),
+          pages(region.pages),
           load_bytes(std::min(front_end.load_bytes, std::bit_ceil(region.element_size))),
           loads((region.element_size + load_bytes - 1) / load_bytes),
           last_bytes(region.element_size - (loads - 1) * load_bytes),
@@ -48,6 +49,7 @@ struct LoadShape {
     static constexpr std::uint32_t most_banks = 32;
 
     std::uint64_t base, stride;
+    traces::PageTable pages;
     std::uint32_t load_bytes, loads, last_bytes;  ///< last_bytes: what the last load reads
     std::uint32_t lanes_per_request;
     int sector_shift;
@@ -73,7 +75,8 @@ struct LoadShape {
 
 private:
     std::uint64_t address(std::uint32_t place) const {
-        return apart ? base + (std::uint64_t{place} - first_piece) * load_bytes : base + place * stride;
+        if (apart) return base + (std::uint64_t{place} - first_piece) * load_bytes;
+        return pages.empty() ? base + place * stride : pages.address(place * stride);
     }
 };
 

@@ -1,0 +1,74 @@
+// Loads of a warp as accesses: each by itself, or those of an object that the compiler split as one.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "traces/accelsim/traceg_parser.hpp"
+#include "traces/loads/load_access.hpp"
+
+namespace raycache::traces {
+
+/// Which consecutive loads of a warp become one access: those of one mask and ascending program counters that read on
+/// in each lane where the load before ended, up to 4096 B, and
+enum class Fuse {
+    never,
+    /// all are of 16 B but the last, and no register that one of them writes is read or written by one that follows: a
+    /// warp need not wait between them,
+    independent,
+    always,
+};
+
+class AccessFuser {
+public:
+    explicit AccessFuser(Fuse fuse) : fuse_(fuse) {}
+
+    /// Calls use(warp, access) for accesses that nothing can be added to any more.
+    template <class Use>
+    void add(std::uint64_t warp, const GlobalLoad& load, const Use& use) {
+        if (warp == warp_ && continues(load)) {
+            access_.bytes += load.bytes;
+        } else {
+            flush(use);
+            access_.mask = load.mask;
+            access_.bytes = first_bytes_ = load.bytes;
+            std::copy(load.addresses.begin(), load.addresses.end(), access_.addresses.begin());
+            warp_ = warp;
+            written_ = {};
+        }
+        pc_ = load.pc;
+        last_bytes_ = load.bytes;
+        written_ |= load.written;
+        access_.grain = std::min(first_bytes_, access_.bytes & -access_.bytes);
+        if (fuse_ == Fuse::never) flush(use);
+    }
+
+    template <class Use>
+    void flush(const Use& use) {
+        if (access_.mask != 0) use(warp_, access_);
+        access_.mask = 0;
+    }
+
+private:
+    static constexpr std::uint32_t most_bytes = 4096, whole_bytes = 16;
+
+    bool continues(const GlobalLoad& load) const {
+        if (access_.mask != load.mask || pc_ >= load.pc || access_.bytes + load.bytes > most_bytes) return false;
+        if (fuse_ == Fuse::independent &&
+            (last_bytes_ != whole_bytes || load.bytes > whole_bytes || (written_ & (load.read | load.written)).any()))
+            return false;
+        return std::equal(load.addresses.begin(), load.addresses.end(), access_.addresses.begin(),
+                          [&](std::uint64_t now, std::uint64_t first) {
+                              return now - first == access_.bytes && now + (load.bytes - 1) > first;
+                          });
+    }
+
+    Fuse fuse_;
+    LoadAccess access_;
+    std::uint64_t warp_ = 0, pc_ = 0;                 ///< pc_: of its last load
+    std::uint32_t first_bytes_ = 0, last_bytes_ = 0;  ///< that its first and last load read
+    RegisterSet written_;                             ///< by its loads
+};
+
+}  // namespace raycache::traces

@@ -1,0 +1,22 @@
+// What load instructions of a warp read, as an import hands it on.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "traces/record.hpp"
+
+namespace raycache::traces {
+
+/// One warp access: each active lane reads one object.
+struct LoadAccess {
+    std::uint32_t mask = 0;   ///< active lanes; never 0
+    std::uint32_t bytes = 0;  ///< of an object, 1 to 4096
+    std::uint32_t grain = 1;  ///< a power of two up to 32 that divides every address of objects of this kind
+    std::array<std::uint64_t, warp_lanes> addresses{};  ///< of the active lanes, lowest lane first
+
+    unsigned lanes() const { return static_cast<unsigned>(std::popcount(mask)); }
+};
+
+}  // namespace raycache::traces
