@@ -174,9 +174,13 @@ TEST_CASE("loads whose registers show that none waits for another are one access
     };
     CHECK(count(node(8, "R4")) == 1);
     CHECK(count(node(8, "R4"), Fuse::never) == 2);
-    CHECK(count(node(8, "R10")) == 2);       // an address that the first one loads
-    CHECK(count(node(8, "R7")) == 2);        // its upper half
-    CHECK(count(node(8, "R4", "64")) == 2);  // two loads of 8 B are not one of 16
+    CHECK(count(node(8, "R10")) == 2);  // an address that the first one loads
+    CHECK(count(node(8, "R7")) == 2);   // its upper half
+    const std::string first = "0 1 1 R8 LDG.E.128 1 R4 16 0 0x1000 0",
+                      second = "20 1 1 R12 LDG.E.128 1 R4 16 0 0x1010 0";
+    CHECK(count(block({first, "10 1 1 R4 IADD3 1 R4 0 0", second})) == 1);
+    CHECK(count(block({first, "10 1 1 R20 FFMA 1 R9 0 0", second})) == 2);  // waits for the data
+    CHECK(count(node(8, "R4", "64")) == 2);                                 // two loads of 8 B are not one of 16
     CHECK(count(node(8, "R10"), Fuse::always) == 1);
 }
 

@@ -14,8 +14,8 @@ namespace raycache::traces {
 /// in each lane where the load before ended, up to 4096 B, and
 enum class Fuse {
     never,
-    /// all are of 16 B but the last, and no register that one of them writes is read or written by one that follows: a
-    /// warp need not wait between them,
+    /// all are of 16 B but the last, and no register that one of them writes is read or written by one that follows or
+    /// by what stands between them: a warp need not wait there,
     independent,
     always,
 };
@@ -55,8 +55,8 @@ private:
 
     bool continues(const GlobalLoad& load) const {
         if (access_.mask != load.mask || pc_ >= load.pc || access_.bytes + load.bytes > most_bytes) return false;
-        if (fuse_ == Fuse::independent &&
-            (last_bytes_ != whole_bytes || load.bytes > whole_bytes || (written_ & (load.read | load.written)).any()))
+        if (fuse_ == Fuse::independent && (last_bytes_ != whole_bytes || load.bytes > whole_bytes ||
+                                           (written_ & (load.read | load.written | load.between)).any()))
             return false;
         return std::equal(load.addresses.begin(), load.addresses.end(), access_.addresses.begin(),
                           [&](std::uint64_t now, std::uint64_t first) {

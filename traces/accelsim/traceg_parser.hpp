@@ -21,7 +21,8 @@ struct GlobalLoad {
     std::uint32_t bytes = 0;               ///< that each lane reads: 1, 2, 4, 8, 16 or 32
     std::vector<std::uint64_t> addresses;  ///< of the active lanes, lowest lane first; multiples of `bytes`
     RegisterSet written;                   ///< from the destination on, those that `bytes` fill
-    RegisterSet read;  ///< the sources, each with the one behind it: an address takes two, and one is named
+    RegisterSet read;     ///< the sources, each with the one behind it: an address takes two, and one is named
+    RegisterSet between;  ///< that other instructions of the warp since its load before have to do with
 };
 
 /// What becomes of lanes that read address 0: tracers write it where they lost the address.

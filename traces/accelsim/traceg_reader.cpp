@@ -127,6 +127,7 @@ void TracegReader::begin_warp(std::uint64_t number, const TextPlace& place) {
         place.refuse("warp", fmt::format("each of 0 to {} once", kernel_.warps_per_cta - 1), fmt::format("{}", number));
     seen_[number] = true;
     warp_ = block_ * kernel_.warps_per_cta + number;
+    between_.reset();
 }
 
 /// Whether anything of load_ is left.
@@ -153,9 +154,12 @@ void TracegReader::instruction(std::string_view line, const TextPlace& place) {
     first_instruction_ = false;
     const InstructionLine found = parse_instruction(line, grammar_, place, load_);
     if (!found.is_load) {
+        between_ |= load_.read | load_.written;
         if (found.has_addresses) leave_out(found.opcode.substr(0, std::min<std::size_t>(found.opcode.find('.'), 16)));
         return;
     }
+    load_.between = between_;
+    between_.reset();
     if (!drop_null_lanes()) return;
     ++kernel_.loads;
     kernel_.bypassing += found.opcode.find(".STRONG.") != std::string_view::npos ||

@@ -54,6 +54,7 @@ private:
     std::uint64_t warp_ = 0;
     std::vector<bool> seen_;  ///< warps of the block
     GlobalLoad load_;
+    RegisterSet between_;  ///< GlobalLoad::between of the load that comes next
 };
 
 }  // namespace raycache::traces
