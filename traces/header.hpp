@@ -30,7 +30,7 @@ struct Region {
 
     /// Where not empty: element e lies at byte e * stride of these pages in a row. base and degree are 0 then, and the
     /// stride is a power of two, at most a page, and may be less than the size of an element.
-    PageTable pages;
+    PageTable pages = {};
 
     std::uint64_t address(std::uint32_t element) const {
         const std::uint64_t byte = std::uint64_t{element} * stride;

@@ -169,7 +169,8 @@ TEST_CASE("a compressed trace that is cut or damaged anywhere is refused, and th
     Case c;
     std::vector<std::string> instructions;
     for (unsigned i = 0; i < 2000; ++i)
-        instructions.push_back(fmt::format("{:x} 1 1 R4 LDG.E.SYS 1 R4 4 0 {:#x} 0", 16 * i, 4 * ((i * 7919) % 65536)));
+        instructions.push_back(
+            fmt::format("{:x} 1 1 R4 LDG.E.SYS 1 R4 4 0 {:#x} 0", 16 * i, 4096 + 4 * ((i * 7919) % 65536)));
     const std::string text = kernel(cta(instructions));
     const std::string compressed = c.folder / "k.traceg.xz";
     {

@@ -13,10 +13,11 @@ using namespace raycache::traces;
 
 namespace {
 
-/// As it stands in the file: of version 2 if that of version 1 would not say all.
+/// As it stands in the file: of version 2 if that of version 1 would not say all, or not of the regions.
 std::string provenance_json(const Header& header) {
-    const bool wavefront = header.provenance.execution != Provenance{}.execution;
-    return provenance_to_json(header.provenance, wavefront ? 2 : 1);
+    bool newer = header.provenance.execution != Provenance{}.execution;
+    for (const Region& region : header.regions) newer |= !region.pages.empty();
+    return provenance_to_json(header.provenance, newer ? 2 : 1);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "traces/writer.hpp"
 
 using namespace raycache::traces;
+using Catch::Matchers::Contains;
 
 namespace {
 

@@ -78,9 +78,15 @@ private:
         warp_ = nullptr;
     }
 
-    /// Warps without records up to that one.
+    /// Warps without records up to that one; many of them in large blocks.
     void pad(std::uint64_t number, std::size_t most) {
+        constexpr std::uint64_t many = 4096;
+        if (next_ + many < number) {
+            flush();
+            most = block_empty_warps;
+        }
         while (next_ < number) append({}, most);
+        if (most == block_empty_warps) flush();
     }
 
     void append(WarpTrace&& warp, std::size_t most) {
