@@ -44,3 +44,25 @@ TEST_CASE("estimates without a value are no numbers and have no interval") {
     CHECK(ratio_to_baseline({{0, 0}, {1, 1}}, {{1, 2}, {1, 1}}).mean == 0);
     CHECK(std::isnan(ratio_of_totals({{}, {}}).mean));
 }
+
+TEST_CASE("rates of exactly 0 and 1, and values that do not vary, have an interval of nothing") {
+    for (const double rate : {0.0, 1.0, 0.25}) {
+        const Estimate e = ratio_of_totals({{rate * 4, rate * 8, rate * 40}, {4, 8, 40}});
+        CHECK(e.mean == rate);
+        CHECK(e.half_width == 0);
+    }
+    // A factor that is 0: a product of 0, of which a relative error says nothing.
+    const Estimate zero = product_of_powers({{{0, 0}, 1}, {{3, 4}, -1}});
+    CHECK(zero.mean == 0);
+    CHECK_FALSE(zero.half_width);
+    CHECK(std::isnan(product_of_powers({{{3, 4}, 1}, {{0, 0}, -1}}).mean));
+}
+
+TEST_CASE("two units have the interval of one degree of freedom, and shares of sums beyond 2^53 keep it") {
+    // R = 3/2; residuals -0.5, 0.5; half width t(1) sqrt(0.5 / (2 * 1 * 1)).
+    CHECK(*ratio_of_totals({{1, 2}, {1, 1}}).half_width == Approx(student_t_975(1) * 0.5).epsilon(1e-12));
+    const double many = std::ldexp(1.0, 60);
+    const Estimate e = ratio_of_totals({{many, 2 * many}, {many, many}});
+    CHECK(e.mean == 1.5);
+    CHECK(*e.half_width == Approx(student_t_975(1) * 0.5).epsilon(1e-12));
+}

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
 """Estimates of the steady state from windows: how compare is told how certain to be, and what it says of that."""
+import time
+
 from support import LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 # Two SMs: windows are short.
@@ -53,13 +55,37 @@ class Estimates(ProgramTest):
 
     def test_a_time_budget_ends_the_estimate_and_says_how_far_it_came(self):
         result = self.warns(*COMPARE, "--target-error", "0.01%", "--time-budget", "0.001")
-        self.assertIn("the time budget of 0.001 s ends at 2 blocks", result.stderr)
+        self.assertRegex(result.stderr, r"the time budget of 0\.001 s is less than an interval takes, [0-9.]+ s: [0-9.]+ s "
+                                        r"until the scene is ready, [0-9.]+ s for 2 blocks; ±[0-9.]+ % \(")
         self.assertIn("2 blocks", result.text)
+
+    def test_a_longer_time_budget_is_spent_on_more_blocks(self):
+        start = time.monotonic()
+        one_look = self.succeeds(*COMPARE, "--target-error", "100%", "--time-budget", "1000").text
+        budget = 6 * (time.monotonic() - start)
+        self.assertIn("2 blocks", one_look)  # a budget looks at two blocks first
+        result = self.warns(*COMPARE, "--target-error", "0.01%", "--time-budget", f"{budget:.3f}")
+        self.assertRegex(result.stderr, r"ends at (?!2 )\d+ blocks, ±[0-9.]+ % \(.*\); the target was ±0\.01 %")
 
     def test_one_sample_and_one_pixel_are_estimated_too(self):
         result = self.warns("compare", *SCENE, "--resolution", "1x1", "--spp", "1", "--strategy",
                             "cranley-patterson,coherent", *GPU, "--windows", "4")
         self.assertIn("holds 24 at once", result.stderr)
+
+    def test_a_sweep_is_of_the_steady_state_unless_launches_are_asked_for(self):
+        sweep = ["sweep", *SCENE, "--resolution", "32x32", "--spp", "16", "--bounces", "1", "--reference-spp", "16", "--mu",
+                 "0,1", "--strategy", "coherent", *GPU]
+        rows = {(r["strategy"], r["mu"]): r
+                for r in self.succeeds(*sweep, "--windows", "4", "--json").json["rows"]}
+        coherent, same = (rows[key]["speed_up"] for key in (("coherent", None), ("micro-jitter", 0)))
+        self.assertGreater(coherent["half_width_95"], 0)
+        self.assertEqual(coherent, same)  # the same windows of the same samples
+        self.assertIn("estimates of the steady state", " ".join(self.succeeds(*sweep, "--windows", "2").text.split()))
+        self.assertNotIn("steady state", self.succeeds(*sweep, "--trace-samples", "1").text)
+        self.assertNotIn("steady state", self.succeeds(*sweep, "--exact").text)
+        for option, value in (("--target-error", "0%"), ("--target-error", "-1%"), ("--target-error", "101%"),
+                              ("--windows", "1")):
+            self.refuses(2, *sweep, option, value, mentions=[option, value, "expected"])
 
     def test_wavefronts_are_replayed_as_whole_launches_and_say_so(self):
         result = self.warns("compare", *SCENE, *PICTURE, "--spp", "4", "--strategy", "coherent", "--execution",

@@ -55,3 +55,8 @@ TEST_CASE("DRAM bytes are not waited for where the scene fits in the last cache"
     for (cachesim::Series& s : now.traffic) s.windows->last_cache_full = false;
     CHECK(worst_error(now, "a").of.starts_with("L2"));
 }
+
+TEST_CASE("a ratio of exactly 0 in every block is certain, and nothing more is waited for") {
+    const Predicted now{{}, {series("a", 200000, 200000, 90000, 90000), series("b", 100000, 100000, 0, 0)}};
+    CHECK(worst_error(now, "a").error == 0);
+}

@@ -8,9 +8,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "cachesim/analysis/estimate.hpp"
 #include "tools/jobs/costs.hpp"
-#include "tools/jobs/replay_launches.hpp"
+#include "tools/jobs/predict_times.hpp"
 #include "tracer/quality/reference_file.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
@@ -101,32 +100,6 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
         }
 }
 
-void predict_times(const tracer::PreparedScene& scene, const cachesim::Gpu& gpu, std::vector<QualityRow>& rows,
-                   Observer& observer) {
-    if (!cachesim::no_time_note(gpu).empty()) {
-        for (QualityRow& row : rows) row.timing = {std::nan(""), std::nullopt};
-        observer.expect("replay", Work::timed_replay, 0);
-        return;
-    }
-    std::vector<std::unique_ptr<tracer::Capture>> captures;
-    for (const QualityRow& row : rows) captures.push_back(std::make_unique<tracer::Capture>(scene, row.settings));
-    const auto series = replay_timed(sources_of(captures), {gpu}, observer);
-    std::vector<cachesim::Sums> cycles(rows.size());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        double seconds = 0, samples = 0;
-        for (const auto& launch : series[r].launches) {
-            seconds += launch.seconds;
-            samples += 1;
-            cycles[r].y.push_back(static_cast<double>(launch.cycles));
-            cycles[r].x.push_back(1);
-        }
-        rows[r].timing = {seconds / samples * static_cast<double>(rows[r].spp()), std::nullopt};
-    }
-    for (std::size_t r = 0; r < rows.size(); ++r)
-        if (rows[r].baseline && *rows[r].baseline != r)
-            rows[r].timing->speed_up = cachesim::ratio_to_baseline(cycles[*rows[r].baseline], cycles[r]);
-}
-
 void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Reference& reference,
                           const QualityRequest& request, std::vector<QualityRow>& rows, Observer& observer,
                           QualityPictures& pictures) {
@@ -206,7 +179,7 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
     for (QualityRow& row : rows)
         if (row.baseline) row.ratio = tracer::rmse_ratio(row.errors, rows[*row.baseline].errors);
     if (request.gpu) {
-        predict_times(scene, *request.gpu, rows, observer);
+        predict_times(scene, request, rows, observer);
         if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())
             render_at_equal_time(scene, reference, request, rows, observer, pictures);
     }
@@ -223,7 +196,7 @@ void expect_stages(Observer& observer, const QualityRequest& request, double ref
     observer.expect("strategies", Work::render, pictures);
     double times = 0;
     for (const auto& c : request.cases) times += trace_cost(c) + replay_cost(c, true);
-    if (request.gpu) observer.expect("replay", Work::timed_replay, times);
+    if (request.gpu && !request.estimate.windows) observer.expect("replay", Work::timed_replay, times);
     if (request.gpu && request.equal_time) observer.expect("equal time", Work::render, pictures);
 }
 

@@ -11,6 +11,7 @@
 #include "cachesim/report/report.hpp"
 #include "tools/jobs/observer.hpp"
 #include "tools/jobs/outputs.hpp"
+#include "tools/jobs/windows/estimate.hpp"
 #include "tracer/capture.hpp"
 #include "tracer/prepared_scene.hpp"
 #include "tracer/quality/error_measures.hpp"
@@ -26,6 +27,7 @@ struct QualityRequest {
     bool pairs = false;         ///< also find the worst pair of dimensions: one more picture per pair
     bool equal_time = false;    ///< also render at the N that takes as long as the baseline; needs a GPU
     std::optional<cachesim::Gpu> gpu;
+    EstimateSettings estimate;   ///< of the times
     std::optional<float> clamp;  ///< of each sample's radiance, as RenderSettings::clamp
 };
 
@@ -46,8 +48,9 @@ struct QualityRow {
     std::vector<PairEffect> pairs;           ///< by pair; empty unless asked for
 
     struct Timing {
-        double seconds = 0;                          ///< predicted for all N samples; NaN: no_time_note()
-        std::optional<cachesim::Estimate> speed_up;  ///< over the baseline at equal N; absent without one
+        double seconds = 0;                             ///< predicted for all N samples; NaN: no_time_note()
+        std::optional<cachesim::Estimate> speed_up;     ///< over the baseline at equal N; absent without one
+        std::optional<cachesim::WindowSample> windows;  ///< none: whole launches
     };
     std::optional<Timing> timing;
     struct EqualTime {

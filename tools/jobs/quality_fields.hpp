@@ -159,7 +159,8 @@ struct Fields<PairEffect> {
 template <>
 struct Fields<QualityRow::Timing> {
     using S = QualityRow::Timing;
-    static constexpr std::tuple all{Field{"seconds", &S::seconds}, Field{"speed_up", &S::speed_up}};
+    static constexpr std::tuple all{Field{"seconds", &S::seconds}, Field{"speed_up", &S::speed_up},
+                                    Field{"windows", &S::windows}};
 };
 
 template <>

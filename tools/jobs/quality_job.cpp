@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "cachesim/report/window_notes.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tracer/render.hpp"
 #include "traces/error.hpp"
@@ -44,6 +46,14 @@ QualityRequest QualityJob::request() const {
     request.pairs = pairs;
     request.equal_time = equal_time;
     request.clamp = clamp;
+    request.estimate = estimate;
+    request.estimate.baseline = baseline;
+    estimate.check();
+    const auto is_wavefront = [](const tracer::CaptureSettings& c) {
+        return c.execution.execution != tracer::Execution::megakernel;
+    };
+    if (estimate.windows && std::any_of(request.cases.begin(), request.cases.end(), is_wavefront))
+        throw UsageError("windows of wavefronts; expected --execution megakernel");
     check(request);
     return request;
 }
@@ -78,6 +88,8 @@ QualityResult run(const QualityJob& job, const std::optional<cachesim::Gpu>& gpu
     report.rows = measure_quality(*scene, reference, request, observer, result.pictures);
     result.pictures.reference = std::move(reference.mean);
     add_notes(report);
+    if (const auto& timing = report.rows.front().timing; timing && timing->windows)
+        report.notes.push_back("predicted times: " + cachesim::window_note(*timing->windows));
     if (gpu)
         if (std::string note = cachesim::no_time_note(*gpu); !note.empty()) report.notes.push_back(std::move(note));
     return result;

@@ -25,6 +25,7 @@ struct QualityJob {
     std::optional<float> clamp;  ///< radiance that no channel of a sample exceeds
     bool pairs = false;          ///< find the worst pair of dimensions
     bool equal_time = false;     ///< also at the N that takes as long as the baseline; needs a GPU
+    EstimateSettings estimate;   ///< of predicted times; of speed-ups over `baseline`
 
     /// What is measured, without a GPU. Throws UsageError for settings that make no sense.
     QualityRequest request() const;

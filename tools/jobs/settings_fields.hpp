@@ -140,7 +140,8 @@ struct Fields<QualityJob> {
                                     Field{"repeats", &S::repeats},
                                     Field{"clamp", &S::clamp},
                                     Field{"pairs", &S::pairs},
-                                    Field{"equal_time", &S::equal_time}};
+                                    Field{"equal_time", &S::equal_time},
+                                    Field{"estimate", &S::estimate}};
 };
 
 }  // namespace raycache::tools

@@ -46,8 +46,10 @@ void EstimateOptions::add(Command& command, const std::string& when_timed) {
         ->type_name("PERCENT")
         ->excludes({"--windows", "--exact", "--trace-samples"});
     command
-        .add_option("--time-budget", time_budget,
-                    "stop after so many seconds, whatever the interval; results then depend on the machine's speed")
+        .add_option(
+            "--time-budget", time_budget,
+            "stop after so many seconds, loading the scene included, whatever the interval; results then depend on "
+            "the machine's speed")
         ->range(0.0, 1e9)
         ->type_name("SECONDS")
         ->default_text("")

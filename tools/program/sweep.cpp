@@ -7,6 +7,7 @@
 #include "cachesim/report/table.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/estimate_options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/quality_options.hpp"
 #include "traces/error.hpp"
@@ -22,6 +23,7 @@ struct SweepArguments {
     std::string swept = "micro-jitter", sequence = "sobol";
     std::vector<std::string> others{"coherent", "cranley-patterson", "random"};
     std::uint64_t spp = 64;
+    EstimateOptions estimate;
     double max_r8 = 2, max_rmse = 1.1;
 };
 
@@ -50,10 +52,15 @@ std::string gain_text(const SweepArguments& o, const QualityRow& row) {
     const auto& up = row.timing->speed_up;
     if (!up || (up->half_width && up->mean - *up->half_width > 1)) return {};
     if (up->half_width && up->mean + *up->half_width < 1) return fmt::format("; slower than {}", baseline);
-    const std::uint64_t traced = std::min(o.common.sampling.trace_samples, o.spp);
     std::string text = fmt::format("; no certain gain over {}", baseline);
     constexpr double least = 0.005;  // a gain of half a percent is none to speak of
     const double wanted = std::max(std::fabs(up->mean - 1), least);
+    if (row.timing->windows) {
+        if (up->half_width && *up->half_width > wanted)
+            text += fmt::format(", too noisy to say: lower --target-error to {:.2g}%", 100 * wanted / up->mean);
+        return text;
+    }
+    const std::uint64_t traced = std::min(o.common.sampling.trace_samples, o.spp);
     const std::uint64_t to = up->half_width ? std::min(o.spp, tracer::raised(traced, *up->half_width, wanted))
                                             : std::min<std::uint64_t>(o.spp, 8);
     if (to > traced) text += ", too noisy to say: " + tracer::Raise{"--trace-samples", traced, to}.text();
@@ -111,6 +118,9 @@ Action plan(const std::shared_ptr<const SweepArguments>& o, const Command* comma
     if (std::find(others.begin(), others.end(), baseline) == others.end()) others.emplace_back(baseline);
     for (const std::string& strategy : others) add(strategy, {});
     job.baseline = baseline;
+    LaunchSettings launches{{}, job.scene, job.sampling, job.cases};
+    std::string why_exact;  // never: a sweep has megakernels alone
+    job.estimate = o->estimate.settings(*command, launches, why_exact);
     if (!o->common.baseline.empty() && o->common.baseline != baseline)
         throw UsageError(
             fmt::format("--baseline {}; expected {}, which a sweep is held against", o->common.baseline, baseline));
@@ -139,6 +149,7 @@ void add_sweep(Program& program) {
         "sweep",
         "Which scrambling distance to set: predicted speed and picture quality against mu, with a recommendation");
     o->common.add(*command, true);
+    o->estimate.add(*command, "of every predicted speed-up");
     command->remove_option("--mu");  // of one strategy; here it is a list
     command->add_option("--mu", o->mus, "scrambling distances, separated by commas")->range(0.0, 1.0);
     command->add_option("--swept", o->swept, "the strategy whose mu is swept")->choices("strategy", strategy_names());
@@ -152,6 +163,7 @@ void add_sweep(Program& program) {
     command->examples(
         {"raycache sweep courtyard --gpu gtx-980-ti --spp 64",
          "raycache sweep sponza.glb --gpu h100 --spp 256 --resolution 256x256 --mu 0,0.1,0.2,0.5,1 --csv",
+         "raycache sweep courtyard --gpu rtx-3070 --spp 256 --target-error 2%",
          "raycache sweep cornell_box.glb --gpu gtx-980-ti --json > sweep.json && tools/plot_sweep sweep.json -o "
          "sweep.png"});
     command->plan([o, command] { return plan(o, command); });

@@ -42,11 +42,12 @@ void check_windows(const LaunchSettings& launches, const EstimateSettings& setti
 Estimated estimate(const LaunchSettings& launches, const EstimateSettings& settings,
                    const std::vector<cachesim::Gpu>& gpus, bool timed, Observer& observer, const FileNames& outputs) {
     check_windows(launches, settings);
+    const auto start = Estimator::Clock::now();
     warn_of_strategies(launches.captures(), observer);
     const auto scene = launches.scene.prepare(outputs, observer);
     Estimator estimator(*scene, strategies_of(launches), settings, gpus,
                         std::vector<cachesim::Idealised>(timed ? 1 : 0), false, observer);
-    estimator.run(settings.baseline);
+    estimator.run(settings.baseline, start);
     Estimated out;
     for (const cachesim::Gpu& gpu : gpus) out.subject.gpus.push_back(gpu_json(gpu));
     out.subject.traces = estimator.subject();

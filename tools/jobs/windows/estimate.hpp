@@ -20,7 +20,7 @@ struct EstimateSettings {
     /// Half width of the 95 % interval of each ratio to the baseline (of each mean where nothing is compared), over
     /// it: 0 … 1. In time, of speed-ups alone; else of bytes per ray of every level.
     double target_error = 0.05;
-    double time_budget = 0;          ///< seconds, after which no further blocks are begun; 0: none
+    double time_budget = 0;          ///< seconds, the scene's loading included; no blocks that would end later; 0: none
     std::uint64_t window_count = 0;  ///< so many of each strategy, whatever the error; 0: by the two above
     std::string baseline;            ///< what target_error is about; empty: cranley-patterson where it is compared
 

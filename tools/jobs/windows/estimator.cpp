@@ -4,21 +4,19 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <set>
 #include <utility>
 
 #include "tools/jobs/costs.hpp"
-#include "tools/jobs/windows/stop_rule.hpp"
 #include "tracer/sampling/pixel_place.hpp"
 #include "tracer/simt/thread_map.hpp"
 
 namespace raycache::tools {
 namespace {
 
-constexpr std::uint32_t first_look = 8;
+constexpr std::uint32_t first_look = 8, least_blocks = 2;
 constexpr double all_error = 0.05;  ///< of a 95 % interval
 
 tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
@@ -26,11 +24,13 @@ tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
 }
 
 Estimator::Case make_case(const tracer::PreparedScene& scene, const WindowedStrategy& strategy,
-                          const WindowSizes& sizes, std::uint32_t blocks) {
+                          const WindowChoice& choice, std::uint32_t blocks) {
     tracer::CaptureSettings settings = strategy.capture;
     const tracer::LaunchGrid grid = grid_of(settings);
     const tracer::SampleSet& samples = settings.strategy.samples;
-    Estimator::Case c{{}, {samples.spp, grid.warps(), grid.samples_per_launch(), samples.seed, sizes}, {}, {}, {}, {},
+    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15;  // bits of drawings that follow each other differ widely
+    const std::uint64_t seed = samples.seed ^ choice.drawing * golden;
+    Estimator::Case c{{}, {samples.spp, grid.warps(), grid.samples_per_launch(), seed, choice.sizes}, {}, {}, {}, {},
                       {}};
     c.first = c.plan.draw(blocks);
     for (const std::uint32_t first : c.first)
@@ -58,8 +58,14 @@ std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
 
 Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<WindowedStrategy>& strategies,
                      const EstimateSettings& settings, const std::vector<cachesim::Gpu>& gpus,
-                     std::vector<cachesim::Idealised> ideals, bool findings, Observer& observer)
-    : settings_(settings), gpus_(gpus), ideals_(std::move(ideals)), observer_(observer), error_of_look_(all_error) {
+                     std::vector<cachesim::Idealised> ideals, bool findings, Observer& observer,
+                     const WindowChoice& choice)
+    : settings_(settings),
+      gpus_(gpus),
+      ideals_(std::move(ideals)),
+      observer_(observer),
+      sizes_(choice.sizes),
+      error_of_look_(all_error) {
     std::uint32_t blocks = most_blocks;
     if (settings.window_count != 0) {
         sizes_.windows = static_cast<std::uint32_t>(std::min<std::uint64_t>(sizes_.windows, settings.window_count / 2));
@@ -67,7 +73,7 @@ Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<Windo
         blocks = static_cast<std::uint32_t>(settings.window_count / sizes_.windows);
     }
     for (const WindowedStrategy& strategy : strategies) {
-        Case& c = cases_.emplace_back(make_case(scene, strategy, sizes_, blocks));
+        Case& c = cases_.emplace_back(make_case(scene, strategy, {sizes_, choice.drawing}, blocks));
         if (!findings) continue;
         c.depth = std::make_unique<cachesim::ElementDepth>(c.capture->header().regions);
         c.findings.resize(gpus.size());
@@ -126,9 +132,23 @@ void Estimator::run_blocks(std::uint32_t end) {
     blocks_ = end;
 }
 
-/// Looks at 8, 16, 32 … blocks. Look number k, from 1, may err in a share 0.05 / 2^k of all cases, so that all of them
-/// together err in less than 0.05: the union bound.
-void Estimator::run(const std::string& baseline) {
+Worst Estimator::look(std::uint32_t end, const std::string& baseline) {
+    if (blocks_ == 0) expect(0, end);
+    run_blocks(end);
+    error_of_look_ /= 2;
+    return worst_ = worst_error(result(), baseline);
+}
+
+/// The half width falls with the square root of the blocks: the looks that are still to come.
+void Estimator::expect_further(std::uint32_t end, double error) {
+    for (std::uint32_t next = 2 * end; next <= most_blocks; next *= 2) {
+        expect(next / 2, next);
+        if (error * std::sqrt(end / static_cast<double>(next)) <= settings_.target_error) return;
+    }
+}
+
+/// Looks at 8, 16, 32 … blocks; with a budget at 2, 4, 8 … and, where the next does not fit, at what fits.
+void Estimator::run(const std::string& baseline, Clock::time_point start) {
     warn_of_pictures();
     if (settings_.window_count != 0) {
         const auto blocks = static_cast<std::uint32_t>(settings_.window_count / sizes_.windows);
@@ -136,33 +156,42 @@ void Estimator::run(const std::string& baseline) {
         run_blocks(blocks);
         return;
     }
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    const bool budget = settings_.time_budget > 0;
-    for (std::uint32_t end = budget ? 2 : first_look; end <= most_blocks; end *= 2) {
-        const double before = seconds();
-        if (blocks_ == 0) expect(0, end);
-        run_blocks(end);
-        error_of_look_ /= 2;
-        const Worst now = worst_error(result(), baseline);
-        if (now.error <= settings_.target_error) return;
-        // The half width falls with the square root of the blocks: those looks are still to come.
-        for (std::uint32_t next = 2 * end; next <= most_blocks; next *= 2) {
-            expect(next / 2, next);
-            if (now.error * std::sqrt(end / static_cast<double>(next)) <= settings_.target_error) break;
-        }
-        const double last = seconds() - before;
-        if (budget && seconds() + 2 * last > settings_.time_budget) {
-            observer_.warn(
-                fmt::format("the time budget of {} s ends at {} blocks, ±{:.1f} % ({}); the target was ±{:.2g} %",
-                            settings_.time_budget, end, 100 * now.error, now.of, 100 * settings_.target_error));
-            return;
-        }
-        if (2 * end > most_blocks)
-            observer_.warn(fmt::format("no more than {} blocks are replayed: ±{:.1f} % ({}); the target was ±{:.2g} %",
-                                       most_blocks, 100 * now.error, now.of, 100 * settings_.target_error));
+    if (settings_.time_budget > 0) return spend_budget(baseline, start);
+    for (std::uint32_t end = first_look; end <= most_blocks; end *= 2) {
+        if (look(end, baseline).error <= settings_.target_error) return;
+        expect_further(end, worst_.error);
     }
+    observer_.warn(fmt::format("no more than {} blocks are replayed: {}", most_blocks, how_far()));
+}
+
+void Estimator::spend_budget(const std::string& baseline, Clock::time_point start) {
+    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const double budget = settings_.time_budget, prepared = seconds();
+    look(least_blocks, baseline);
+    if (const double took = seconds(); took > budget && worst_.error > settings_.target_error) {
+        observer_.warn(
+            fmt::format("the time budget of {:g} s is less than an interval takes, {:.1f} s: {:.1f} s until the scene "
+                        "is ready, {:.1f} s for {} blocks; {}",
+                        budget, took, prepared, took - prepared, blocks_, how_far()));
+        return;
+    }
+    while (worst_.error > settings_.target_error && blocks_ < most_blocks) {
+        expect_further(blocks_, worst_.error);
+        const double left = budget - seconds(), of_block = (seconds() - prepared) / blocks_;
+        const auto fits = static_cast<std::uint32_t>(std::clamp(left / of_block, 0.0, 1.0 * most_blocks));
+        if (fits == 0) break;
+        // Looks are counted, so few long ones: what is left for less than twice as many blocks is one look, the last.
+        const std::uint32_t more = fits < 3 * blocks_ ? fits : blocks_;
+        look(std::min(blocks_ + more, most_blocks), baseline);
+    }
+    if (worst_.error > settings_.target_error)
+        observer_.warn(fmt::format("the time budget of {:g} s ends at {} blocks, {}", budget, blocks_, how_far()));
+}
+
+/// After a look.
+std::string Estimator::how_far() const {
+    return fmt::format("±{:.1f} % ({}); the target was ±{:.2g} %", 100 * worst_.error, worst_.of,
+                       100 * settings_.target_error);
 }
 
 cachesim::Origin Estimator::origin(const Case& c, std::size_t gpu) const {

@@ -30,6 +30,7 @@ void fill(cachesim::SpeedUp& s, std::size_t ideal, const Estimator::Case& base, 
 
 ExplainResult explain_windows(const ExplainJob& job, const cachesim::Gpu& gpu, Observer& observer,
                               const FileNames& outputs) {
+    const auto start = Estimator::Clock::now();
     warn_of_strategies(job.launches.captures(), observer);
     const auto scene = job.launches.scene.prepare(outputs, observer);
     const std::vector<cachesim::Gpu> gpus{gpu};
@@ -44,7 +45,7 @@ ExplainResult explain_windows(const ExplainJob& job, const cachesim::Gpu& gpu, O
         pair[i] = {&estimator.cases()[i].capture->header(), job.launches.cases[i].strategy, estimator.cases()[i].name};
     Explanation explanation = begin_explanation(pair, gpu, job.by);
 
-    estimator.run(base.name);
+    estimator.run(base.name, start);
 
     if (gpu.timing && job.timed) predict_speed_ups(explanation, gpu, base.blocks.size());
     fill(explanation.base, base);

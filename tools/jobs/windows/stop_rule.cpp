@@ -13,7 +13,9 @@ namespace raycache::tools {
 namespace {
 
 void take(Worst& worst, const cachesim::Estimate& e, const std::string& what) {
-    const double relative = e.half_width ? *e.half_width / std::fabs(e.mean) : std::numeric_limits<double>::infinity();
+    const double relative = !e.half_width        ? std::numeric_limits<double>::infinity()
+                            : *e.half_width == 0 ? 0  // of a mean of 0, too
+                                                 : *e.half_width / std::fabs(e.mean);
     if (std::isfinite(e.mean) && !(relative <= worst.error)) worst = {relative, what};
 }
 
