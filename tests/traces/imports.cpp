@@ -313,6 +313,7 @@ TEST_CASE("addresses of Dinero, CSV and 64-bit words are reads of one lane") {
     CHECK(import(AddressFormat::u64, words) == expected);
     CHECK(import(AddressFormat::dinero, "0 7f5000000040\n1 20\n2 30\n0 0x1\n") == expected);
     CHECK(import(AddressFormat::csv, "139981574111296\n0x1\n") == expected);
+    CHECK(import(AddressFormat::csv, "\xef\xbb\xbfobj_id\r\n0x7f5000000040\r\n1\r\n") == expected);
     CHECK(import(AddressFormat::csv, "time,Obj,op\n1,0x7f5000000040,read\n2,7,write\n3,1,read\n") == expected);
     CHECK(import(AddressFormat::csv, "address,size\n0x10,8\n0x1003,4098\n") ==
           std::vector<Access>{{0, 0, 1, 8, {0x10}}, {0, 0, 1, 4096, {0x1003}}, {0, 0, 1, 2, {0x2003}}});

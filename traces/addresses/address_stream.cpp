@@ -108,6 +108,8 @@ void read_csv(TextLines& lines, std::uint64_t bytes, const Use& use, AddressStre
     std::size_t count = 0;
     for (std::string_view line; lines.next(line);) {
         if (trimmed(line).empty()) continue;
+        constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+        if (!columns && line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
         const std::vector<std::string_view> fields = fields_of(line);
         if (!columns) {
             bool is_header = false;
