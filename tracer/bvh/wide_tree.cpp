@@ -6,16 +6,11 @@
 #include <array>
 #include <limits>
 
+#include "tracer/bvh/box_area.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
 namespace {
-
-double area(const Box& box) {
-    const double x = double{box.upper.x} - box.lower.x, y = double{box.upper.y} - box.lower.y,
-                 z = double{box.upper.z} - box.lower.z;
-    return x * y + y * z + z * x;
-}
 
 /// How to make the fewest of a subtree. At 0: 1 if a single root should be a leaf. At j - 1, for at most j roots: how
 /// many of them its first child gives; 0: as for j - 1 roots. At width - 1: of the children of an inner node.
@@ -83,12 +78,12 @@ private:
                     throw Error(fmt::format("a leaf of {} triangles; this BVH layout holds {} in a leaf", node.count,
                                             max_leaf_size_));
                 made.triangles = node.count;
-                made.cost.fill(area(node.box) * node.count);
+                made.cost.fill(half_area(node.box) * node.count);
                 decisions_[i] = {1};
             } else {
                 const Subtree first = stack.back();
                 stack.pop_back();
-                made = join(first, stack.back(), area(node.box), decisions_[i]);
+                made = join(first, stack.back(), half_area(node.box), decisions_[i]);
                 stack.pop_back();
             }
             stack.push_back(made);

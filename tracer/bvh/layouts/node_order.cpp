@@ -4,6 +4,8 @@
 #include <queue>
 #include <utility>
 
+#include "tracer/bvh/box_area.hpp"
+
 namespace raycache::tracer {
 
 std::vector<std::uint32_t> depth_first(const Bvh& bvh) {
@@ -55,12 +57,6 @@ void append_top(const Bvh& bvh, const std::vector<std::uint8_t>& height, std::ui
         append_top(bvh, height, root, std::min<unsigned>(levels - upper, height[root]), order, below);
 }
 
-double area(const Box& box) {
-    const double x = double{box.upper.x} - box.lower.x, y = double{box.upper.y} - box.lower.y,
-                 z = double{box.upper.z} - box.lower.z;
-    return x * y + y * z + z * x;
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> van_emde_boas(const Bvh& bvh) {
@@ -77,7 +73,7 @@ std::vector<std::uint32_t> treelets(const Bvh& bvh) {
     std::vector<std::uint32_t> order;
     std::priority_queue<Candidate> roots, fringe;
     const auto add = [&](std::priority_queue<Candidate>& to, std::uint32_t node) {
-        to.emplace(area(bvh.nodes[node].box), -std::int64_t{node});
+        to.emplace(half_area(bvh.nodes[node].box), -std::int64_t{node});
     };
     if (!bvh.nodes.front().is_leaf()) add(roots, 0);
     while (!roots.empty()) {
