@@ -75,7 +75,7 @@ private:
     /// What does not depend on the layout.
     struct Shared {
         Shared(Scene s, const BvhSettings& bvh_settings, BvhSource bvh_source)
-            : scene(with_offset_scale(std::move(s))),
+            : scene(with_giants(std::move(s))),
               settings(bvh_settings),
               source(std::move(bvh_source)),
               lights(scene),
@@ -92,8 +92,8 @@ private:
     PreparedScene(std::shared_ptr<Shared> shared, const std::string& layout)
         : shared_(std::move(shared)), layout_(bvh_layout_entry(layout)) {}
 
-    static Scene with_offset_scale(Scene scene) {
-        scene.offset_scale = Scene::offset_scale_of(scene.bounds());
+    static Scene with_giants(Scene scene) {
+        scene.giant_above = scene.find_giant_above();
         return scene;
     }
 

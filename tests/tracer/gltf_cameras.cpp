@@ -130,3 +130,27 @@ TEST_CASE("a scene that is a single point still gets a camera apart from it") {
     CHECK(length(camera.eye - Vec3{1, 1, 1}) > 0);
     CHECK(is_finite(camera.forward));
 }
+
+TEST_CASE("an automatic camera looks at most of the triangles, and says what it leaves out far away") {
+    GltfBuilder builder;
+    std::vector<float> cluster;
+    for (int i = 0; i < 30; ++i)
+        for (const float x : {static_cast<float>(i), 0.0F, 0.0F, static_cast<float>(i) + 1, 0.0F, 0.0F,
+                              static_cast<float>(i), 1.0F, 0.0F})
+            cluster.push_back(x);
+    builder.place({{"attributes", {{"POSITION", builder.floats(cluster, "VEC3")}}}});
+    const auto near = load(builder);
+    CHECK(near.warnings.empty());
+    builder.place({{"attributes", {{"POSITION", builder.floats({1e7F, 0, 0, 1.1e7F, 0, 0, 1e7F, 1e6F, 0}, "VEC3")}}}});
+    const auto [scene, warnings] = load(builder);
+    CHECK(scene.cameras[0].eye == near.scene.cameras[0].eye);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].find("leaves out 1 triangles") != std::string::npos);
+}
+
+TEST_CASE("an automatic camera is as near to a scene of a micrometre, for its size, as to any other") {
+    GltfBuilder builder;
+    builder.place({{"attributes", {{"POSITION", builder.floats({0, 0, 0, 1e-6F, 0, 0, 0, 1e-6F, 0}, "VEC3")}}}});
+    const Scene scene = load(builder).scene;
+    CHECK(length(scene.frame.to_world(scene.cameras[0].eye)) < 1e-5);
+}

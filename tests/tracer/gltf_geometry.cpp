@@ -300,5 +300,6 @@ TEST_CASE("a hierarchy of 20000 levels is walked") {
     constexpr int depth = 20000;
     for (int i = 0; i < depth; ++i) builder.node({{"children", {i + 1}}, {"translation", {1, 0, 0}}});
     builder.node({{"mesh", mesh}});
-    CHECK(load(builder).scene.positions[0] == Vec3{depth, 0, 0});
+    const Scene scene = load(builder).scene;
+    CHECK(scene.frame.to_world(scene.positions[0]) == Vec3d(depth, 0, 0));
 }

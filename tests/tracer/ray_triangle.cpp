@@ -50,7 +50,14 @@ void test_plainly(const LeafTriangle& triangle, const Ray& ray, Hit& hit) {
     if ((e0 < 0 || e1 < 0 || e2 < 0) && (e0 > 0 || e1 > 0 || e2 > 0)) return;
     const float determinant = e0 + e1 + e2;
     if (determinant == 0) return;
-    const float t = (e0 * (sz * z[0]) + e1 * (sz * z[1]) + e2 * (sz * z[2])) / determinant;
+    float t = (e0 * (sz * z[0]) + e1 * (sz * z[1]) + e2 * (sz * z[2])) / determinant;
+    if (const float reach = std::max({std::fabs(z[0]), std::fabs(z[1]), std::fabs(z[2])});
+        t > ray.t_min && t < near_share * reach * std::fabs(sz)) {
+        const auto turned = [&](Vec3 v) { return Vec3d(v[kx], v[ky], v[kz]); };
+        t = static_cast<float>(plane_distance(turned(triangle.vertex(0)), turned(triangle.vertex(1)),
+                                              turned(triangle.vertex(2)), turned(ray.origin),
+                                              Vec3d(sx, sy, 1) * (1 / double{sz})));
+    }
     if (t > ray.t_min && t <= hit.t) hit = {t, e1 / determinant, e2 / determinant, triangle.triangle};
 }
 

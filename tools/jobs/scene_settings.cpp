@@ -14,9 +14,9 @@
 namespace raycache::tools {
 namespace {
 
-tracer::Vec3 parse_vector(const std::string& text, const char* option) {
-    tracer::Vec3 v;
-    float* out[3] = {&v.x, &v.y, &v.z};
+tracer::Vec3d parse_vector(const std::string& text, const char* option) {
+    tracer::Vec3d v;
+    double* out[3] = {&v.x, &v.y, &v.z};
     const char* at = text.data();
     const char* end = at + text.size();
     for (int i = 0; i < 3; ++i) {

@@ -8,13 +8,15 @@
 #include <cmath>
 #include <vector>
 
+#include "tracer/bvh/near_plane.hpp"
 #include "tracer/scene/cutout.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
 
 struct EmbreeScene::Impl {
-    /// Some of the scene's triangles. Those that may have holes are a geometry of their own: only it needs a filter.
+    /// Some of the scene's triangles. Those that may have holes and those too wide for float are geometries of their
+    /// own: only they need a filter.
     struct Part {
         const Impl* owner;
         std::vector<std::uint32_t> triangles;  ///< scene triangle of each primitive; empty: all, in order
@@ -25,7 +27,8 @@ struct EmbreeScene::Impl {
 
     const Scene* scene_data = nullptr;
     const TexelLayout* texels = nullptr;
-    Part parts[2]{{this, {}}, {this, {}}};  ///< solid, with holes
+    enum : std::uint32_t { plain, holed, giant, part_count };
+    Part parts[part_count]{{this, {}}, {this, {}}, {this, {}}};
     struct Release {
         void operator()(RTCDevice handle) const { rtcReleaseDevice(handle); }
         void operator()(RTCScene handle) const { rtcReleaseScene(handle); }
@@ -38,20 +41,14 @@ struct EmbreeScene::Impl {
         if (!device) throw Error("Embree cannot start on this processor");
         scene.reset(rtcNewScene(device.get()));
         rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-        for (std::uint32_t t = 0; holes != nullptr && t < data.triangle_count(); ++t)
-            if (data.materials[data.material_of[t]].may_have_holes()) parts[1].triangles.push_back(t);
-        if (!parts[1].triangles.empty()) {
-            std::size_t next = 0;
-            for (std::uint32_t t = 0; t < data.triangle_count(); ++t) {
-                if (next < parts[1].triangles.size() && parts[1].triangles[next] == t)
-                    ++next;
-                else
-                    parts[0].triangles.push_back(t);
-            }
-        }
-        const std::size_t with_holes = parts[1].triangles.size(), solid = data.triangle_count() - with_holes;
-        if (solid != 0) attach(0, solid);
-        if (with_holes != 0) attach(1, with_holes);
+        for (std::uint32_t t = 0; t < data.triangle_count(); ++t)
+            if (const auto part = part_of(t); part != plain) parts[part].triangles.push_back(t);
+        const std::size_t filtered = parts[holed].triangles.size() + parts[giant].triangles.size();
+        for (std::uint32_t t = 0; filtered != 0 && t < data.triangle_count(); ++t)
+            if (part_of(t) == plain) parts[plain].triangles.push_back(t);
+        if (filtered < data.triangle_count()) attach(plain, data.triangle_count() - filtered);
+        for (const auto part : {holed, giant})
+            if (!parts[part].triangles.empty()) attach(part, parts[part].triangles.size());
         // One thread: with more, the order of triangles in the tree, and with it which of two coinciding ones is found,
         // depends on timing.
         const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -61,6 +58,18 @@ struct EmbreeScene::Impl {
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
+
+    std::uint32_t part_of(std::uint32_t triangle) const {
+        Box box;
+        for (std::size_t k = 0; k < 3; ++k) box.add(vertex(triangle, k));
+        if (max_component(box.upper - box.lower) > scene_data->giant_above) return giant;
+        const Material& material = scene_data->materials[scene_data->material_of[triangle]];
+        return texels != nullptr && material.may_have_holes() ? holed : plain;
+    }
+
+    Vec3 vertex(std::uint32_t triangle, std::size_t k) const {
+        return scene_data->positions[scene_data->indices[3 * std::size_t{triangle} + k]];
+    }
 
     void attach(std::uint32_t part, std::size_t count) {
         const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -79,10 +88,11 @@ struct EmbreeScene::Impl {
         for (std::uint32_t i = 0; i < count; ++i)
             std::copy_n(&scene_data->indices[std::size_t{3} * parts[part].triangle(i)], 3,
                         indices + std::size_t{3} * i);
-        if (part == 1) {
-            rtcSetGeometryUserData(mesh, &parts[1]);
-            rtcSetGeometryIntersectFilterFunction(mesh, skip_holes);
-            rtcSetGeometryOccludedFilterFunction(mesh, skip_holes);
+        if (part != plain) {
+            const auto filter = part == holed ? skip_holes : skip_behind;
+            rtcSetGeometryUserData(mesh, &parts[part]);
+            rtcSetGeometryIntersectFilterFunction(mesh, filter);
+            rtcSetGeometryOccludedFilterFunction(mesh, filter);
         }
         rtcCommitGeometry(mesh);
         rtcAttachGeometryByID(scene.get(), mesh, part);
@@ -93,12 +103,34 @@ struct EmbreeScene::Impl {
         const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
         for (unsigned i = 0; i < arguments->N; ++i) {
             if (arguments->valid[i] == 0) continue;
-            const auto primitive = RTCHitN_primID(arguments->hit, arguments->N, i);
+            const Scene& scene = *part.owner->scene_data;
+            const std::uint32_t triangle = part.triangle(RTCHitN_primID(arguments->hit, arguments->N, i));
+            if (!scene.materials[scene.material_of[triangle]].may_have_holes()) continue;
             const Cutout cutout =
-                cutout_at(*part.owner->scene_data, *part.owner->texels, part.triangle(primitive),
-                          RTCHitN_u(arguments->hit, arguments->N, i), RTCHitN_v(arguments->hit, arguments->N, i));
+                cutout_at(scene, *part.owner->texels, triangle, RTCHitN_u(arguments->hit, arguments->N, i),
+                          RTCHitN_v(arguments->hit, arguments->N, i));
             if (!cutout.solid) arguments->valid[i] = 0;
         }
+    }
+
+    /// Hits of giants that lie behind the ray's start in truth; then what skip_holes() skips.
+    static void skip_behind(const RTCFilterFunctionNArguments* arguments) {
+        const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
+        const Impl& impl = *part.owner;
+        for (unsigned i = 0; i < arguments->N; ++i) {
+            if (arguments->valid[i] == 0) continue;
+            RTCRayN* const ray = arguments->ray;
+            const unsigned n = arguments->N;
+            const Vec3d origin(RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i));
+            const Vec3d direction(RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i));
+            const std::uint32_t triangle = part.triangle(RTCHitN_primID(arguments->hit, n, i));
+            const Vec3d a = impl.vertex(triangle, 0), b = impl.vertex(triangle, 1), c = impl.vertex(triangle, 2);
+            const double reach = std::max({length(a - origin), length(b - origin), length(c - origin)});
+            if (double{RTCRayN_tfar(ray, n, i)} * length(direction) >= double{near_share} * reach) continue;
+            if (!(plane_distance(a, b, c, origin, direction) > double{RTCRayN_tnear(ray, n, i)}))
+                arguments->valid[i] = 0;
+        }
+        if (impl.texels != nullptr) skip_holes(arguments);
     }
 
     /// What Embree takes: beyond it asserts, or where those are off answers at random. A ray that rounding or a scene

@@ -2,15 +2,18 @@
 // runs along one axis, then decide by the signs of three 2-D edge functions; where one is exactly zero, decide in
 // double. Vectors hold one number per vertex: each is computed in the order of the formula, so that the result does not
 // depend on them. Two triangles that share an edge compute the same number for it, so no ray slips between them.
+// Distances that are small for the triangle are computed again, in double (near_plane.hpp).
 #pragma once
 
 #include <immintrin.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "tracer/bvh/layouts/leaf_triangle.hpp"
+#include "tracer/bvh/near_plane.hpp"
 #include "tracer/ray.hpp"
 
 namespace raycache::tracer {
@@ -40,6 +43,19 @@ struct ShearedRay {
         row_z = static_cast<std::uint8_t>(16 * kz);
     }
 };
+
+/// To the plane of the triangle, computed in double.
+inline float exact_distance(const LeafTriangle& triangle, const ShearedRay& ray) {
+    const auto row = [&](std::uint8_t at) {
+        return reinterpret_cast<const float*>(reinterpret_cast<const char*>(&triangle) + at);
+    };
+    const float* const x = row(ray.row_x);
+    const float* const y = row(ray.row_y);
+    const float* const z = row(ray.row_z);
+    const auto vertex = [&](int i) { return Vec3d(x[i], y[i], z[i]); };
+    return static_cast<float>(plane_distance(vertex(0), vertex(1), vertex(2), {ray.x, ray.y, ray.z},
+                                             Vec3d(ray.sx, ray.sy, 1) * (1 / double{ray.sz})));
+}
 
 /// Writes t, u, v and returns true if the ray meets the triangle at t in (t_min, best], where `best` is `hit` as it
 /// was: equal distances go to the lower triangle index, whatever the order of the visits. Leaves `hit` alone otherwise.
@@ -77,8 +93,15 @@ inline bool test_triangle(const LeafTriangle& triangle, const ShearedRay& ray, H
     _mm_store_ps(wz, _mm_mul_ps(e, _mm_mul_ps(all(ray.sz), z)));
     const float determinant = w[0] + w[1] + w[2];
     if (determinant == 0) return false;
-    const float t = (wz[0] + wz[1] + wz[2]) / determinant;
+    float t = (wz[0] + wz[1] + wz[2]) / determinant;
     if (!(t > ray.t_min && t <= hit.t)) return false;
+    alignas(16) float depth[4];
+    _mm_store_ps(depth, z);
+    const float reach = std::max({std::fabs(depth[0]), std::fabs(depth[1]), std::fabs(depth[2])});
+    if (t < near_share * reach * std::fabs(ray.sz)) [[unlikely]] {
+        t = exact_distance(triangle, ray);
+        if (!(t > ray.t_min && t <= hit.t)) return false;
+    }
     if (t == hit.t && triangle.triangle >= hit.triangle) return false;
     hit = {t, w[1] / determinant, w[2] / determinant, triangle.triangle};
     return true;

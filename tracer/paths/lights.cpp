@@ -54,12 +54,14 @@ void Lights::add_emitters(const Scene& scene, std::vector<double>& power) {
         const std::uint32_t* index = &scene.indices[3 * std::size_t{t}];
         const Vec3 a = scene.positions[index[0]];
         const Vec3 edge1 = scene.positions[index[1]] - a, edge2 = scene.positions[index[2]] - a;
-        const Vec3 normal = cross(edge1, edge2);
-        const float area = 0.5F * length(normal);
+        const Vec3d normal = cross(Vec3d(edge1), Vec3d(edge2));  // as in surface.cpp
+        const double twice = length(normal);
+        const auto area = static_cast<float>(0.5 * twice);
         if (!(area > 0) || !(mean[i] > 0)) continue;
+        const auto width = static_cast<float>(std::max(length(Vec3d(edge1)), length(Vec3d(edge2))));
         const bool textured = material.emission_texture >= 0;
-        emitters_.push_back(
-            {a, edge1, edge2, normalize(normal), material.emission, area, t, textured ? &material : nullptr});
+        emitters_.push_back({a, edge1, edge2, (normal * (1 / twice)).rounded(), material.emission, area, width, t,
+                             textured ? &material : nullptr});
         power.push_back(double{area} * double{mean[i]});
         if (textured) textured_.emplace_back(t, mean[i]);
     }
@@ -102,8 +104,13 @@ LightSample Lights::sample_sun(Vec2 random) const {
     const float sin_theta = std::sqrt(std::max(0.0F, 1 - cos_theta * cos_theta));
     const float phi = 2 * std::numbers::pi_v<float> * random.y;
     const Vec3 local{sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta};
-    return {to_world(local, sun_light_.direction), std::numeric_limits<float>::infinity(), sun_light_.direction,
-            sun_light_.irradiance, sun_pdf_};
+    return {to_world(local, sun_light_.direction),
+            std::numeric_limits<float>::infinity(),
+            sun_light_.direction,
+            sun_light_.irradiance,
+            sun_pdf_,
+            0,
+            0};
 }
 
 LightSample Lights::sample_emitter(Vec3 from, Vec2 random) const {
@@ -126,8 +133,18 @@ LightSample Lights::sample_emitter(Vec3 from, Vec2 random) const {
     const Vec3 direction = way / distance;
     const float cosine = std::fabs(dot(emitter.normal, direction));
     const float weight = emitter.area / share * cosine / distance / distance;
-    return {direction,  distance,         emitter.normal,   emitter.radiance * weight,
-            1 / weight, emitter.textured, emitter.triangle, u,
+    const Vec3 n = emitter.normal;
+    const float off_origin = std::fabs(n.x * point.x) + std::fabs(n.y * point.y) + std::fabs(n.z * point.z);
+    return {direction,
+            distance,
+            n,
+            emitter.radiance * weight,
+            1 / weight,
+            emitter.width,
+            off_origin,
+            emitter.textured,
+            emitter.triangle,
+            u,
             v};
 }
 

@@ -18,6 +18,8 @@ struct LightSample {
     Vec3 normal;             ///< of the light's surface, on either side
     Vec3 radiance_over_pdf;  ///< radiance / (probability density per solid angle); black: not lit from here
     float pdf = 0;           ///< that density; infinity for a light of no size, which no other ray can meet
+    float width = 0;         ///< of the light's triangle, its longest edge
+    float off_origin = 0;  ///< |n.x p.x| + |n.y p.y| + |n.z p.z| of its normal and the point: what rounding grows with
     /// Of a triangle whose emission a texture says: still to be multiplied with its texel at (u, v). Else null.
     const Material* textured = nullptr;
     std::uint32_t triangle = 0;
@@ -52,7 +54,7 @@ private:
         Vec3 corner, edge1, edge2;
         Vec3 normal;  ///< unit
         Vec3 radiance;
-        float area;
+        float area, width;
         std::uint32_t triangle;
         const Material* textured;
     };

@@ -12,6 +12,7 @@
 #include "tracer/scene/gltf_cameras.hpp"
 #include "tracer/scene/gltf_document.hpp"
 #include "tracer/scene/gltf_flatten.hpp"
+#include "tracer/scene/gltf_frame.hpp"
 #include "tracer/scene/gltf_lights.hpp"
 #include "tracer/scene/gltf_materials.hpp"
 #include "tracer/scene/gltf_nodes.hpp"
@@ -146,10 +147,14 @@ Scene load(const GltfReport& report) {
         check_scene_size(nodes.meshes, sources, report);
         const auto meshes = decode_shapes(sources, losses, report);
         mark_vertex_alpha(meshes, materials.blended, scene.materials);
+        const GltfPlacedMeshes placed_meshes{nodes.meshes, meshes};
+        const GltfFrame frame = choose_gltf_frame(placed_meshes, nodes.cameras, document);
+        report_coarse_places(placed_meshes, frame, report);
+        scene.frame = frame.frame;
         flatten_gltf_meshes(nodes.meshes, meshes, scene, losses);
-        scene.cameras = read_gltf_cameras(document, nodes.cameras, report);
+        scene.cameras = read_gltf_cameras(document, nodes.cameras, scene.frame, report);
         if (scene.cameras.empty() && scene.triangle_count() > 0)
-            scene.cameras.push_back(overview_camera(scene.bounds()));
+            scene.cameras.push_back(overview_camera(box_in_view(scene, report), scene.frame));
         losses.open_back_faces = count_open_back_faces(scene, nodes.meshes, meshes, materials.double_sided);
     }
     losses.report(report);
@@ -162,7 +167,7 @@ Scene load(const GltfReport& report) {
     for (const GltfImageBytes& image : images)
         if (!image.file.empty()) scene.files.push_back(image.file);
     scene.textures = decode_gltf_textures(images, scene.materials, report);
-    scene.punctual_lights = read_gltf_lights(document, nodes.lights, report);
+    scene.punctual_lights = read_gltf_lights(document, nodes.lights, scene.frame, report);
     const std::uint64_t used = scene.memory->used(), kept = bytes_of(scene);
     if (used > kept) scene.memory->release(used - kept);  // the file itself is no longer needed
     return scene;

@@ -1,5 +1,7 @@
 #include "tracer/scene/gltf_flatten.hpp"
 
+#include "tracer/scene/gltf_frame.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 
@@ -12,10 +14,14 @@ void append(std::vector<T>& list, std::size_t count, T value) {
     list.insert(list.end(), count, value);
 }
 
+bool is_within(Vec3 p, float limit) {
+    return std::abs(p.x) <= limit && std::abs(p.y) <= limit && std::abs(p.z) <= limit;
+}
+
 /// Takes back the vertices from `first_vertex` on, appending instead those of the usable triangles, unshared. Rare:
 /// it needs a transform that sends finite vertices beyond what we accept.
-void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_vertex, bool turn, Scene& scene,
-                             GltfLosses& losses) {
+void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_vertex, bool turn, float limit,
+                             Scene& scene, GltfLosses& losses) {
     const std::vector<Vec3> moved(scene.positions.begin() + static_cast<std::ptrdiff_t>(first_vertex),
                                   scene.positions.end());
     scene.positions.resize(first_vertex);
@@ -37,7 +43,7 @@ void append_usable_triangles(const GltfPrimitive& primitive, std::size_t first_v
     if (has_texcoords) scene.texcoords.resize(first_vertex);
     for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
         const std::uint32_t* corners = &primitive.indices[t];
-        if (!std::all_of(corners, corners + 3, [&](std::uint32_t v) { return is_usable_position(moved[v]); })) {
+        if (!std::all_of(corners, corners + 3, [&](std::uint32_t v) { return is_within(moved[v], limit); })) {
             ++losses.bad_triangles;
             continue;
         }
@@ -64,18 +70,20 @@ std::vector<Vec2>& layer_of(Scene& scene, std::size_t layer) {
     return layer == 0 ? scene.texcoords : scene.more_texcoords[layer - 1];
 }
 
-void append_primitive(const GltfPrimitive& primitive, const Transform& to_world, const Attributes& with, Scene& scene,
+void append_primitive(const GltfPrimitive& primitive, const Transform& to_frame, const Attributes& with, Scene& scene,
                       GltfLosses& losses) {
     const std::size_t first_vertex = scene.positions.size(), count = primitive.positions.size();
+    // Whatever the unit, a vertex beyond `max_coordinate` metres is refused.
+    const auto limit = static_cast<float>(double{max_coordinate} / std::max(1.0, scene.frame.unit));
     bool usable = true;
     for (const Vec3 p : primitive.positions) {
-        const Vec3 world = to_world.point(p);
-        usable = usable && is_usable_position(world);
-        scene.positions.push_back(world);
+        const Vec3 place = to_frame.point(p);
+        usable = usable && is_within(place, limit);
+        scene.positions.push_back(place);
     }
     if (with.normals && primitive.normals.empty()) append(scene.normals, count, Vec3{0, 0, 0});
-    const NormalTransform normal_to_world(to_world);
-    for (const Vec3 n : primitive.normals) scene.normals.push_back(normal_to_world(n));
+    const NormalTransform turned(to_frame);
+    for (const Vec3 n : primitive.normals) scene.normals.push_back(turned(n));
     for (std::size_t layer = 0; layer < with.layers; ++layer) {
         auto& list = layer_of(scene, layer);
         const bool has = layer < primitive.texcoords.size() && !primitive.texcoords[layer].empty();
@@ -87,9 +95,9 @@ void append_primitive(const GltfPrimitive& primitive, const Transform& to_world,
     if (with.colors && primitive.colors.empty()) append(scene.colors, count, VertexColor{});
     scene.colors.insert(scene.colors.end(), primitive.colors.begin(), primitive.colors.end());
 
-    const bool turn = to_world.determinant() < 0;
+    const bool turn = to_frame.determinant() < 0;
     if (!usable) {
-        append_usable_triangles(primitive, first_vertex, turn, scene, losses);
+        append_usable_triangles(primitive, first_vertex, turn, limit, scene, losses);
         return;
     }
     const auto base = static_cast<std::uint32_t>(first_vertex);
@@ -161,7 +169,7 @@ void flatten_gltf_meshes(const std::vector<GltfPlacement>& placements,
     scene.material_of.reserve(indices / 3);
     for (const GltfPlacement& placement : placements)
         for (const GltfPrimitive& primitive : meshes[static_cast<std::size_t>(placement.object)])
-            append_primitive(primitive, placement.to_world, with, scene, losses);
+            append_primitive(primitive, in_frame(placement.to_world, scene.frame), with, scene, losses);
 }
 
 }  // namespace raycache::tracer

@@ -1,4 +1,4 @@
-// Placed meshes -> one list of world-space triangles.
+// Placed meshes -> one list of triangles in the scene's frame.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ constexpr std::uint64_t max_scene_triangles = (1ULL << 30) - 2;
 void check_scene_size(const std::vector<GltfPlacement>&, const std::vector<std::vector<GltfPrimitiveSource>>& sources,
                       const GltfReport&);
 
-/// Appends every placement of every primitive to `scene`. A transform with a negative determinant turns the triangles
-/// round, so that their fronts stay fronts. Normals, texture coordinates and colours are filled for all vertices if any
+/// Appends every placement of every primitive to `scene`, in its frame. A transform with a negative determinant turns the
+/// triangles round, so that their fronts stay fronts. Normals, texture coordinates and colours are filled for all vertices if any
 /// placed primitive has them.
 void flatten_gltf_meshes(const std::vector<GltfPlacement>&, const std::vector<std::vector<GltfPrimitive>>& meshes,
                          Scene& scene, GltfLosses&);

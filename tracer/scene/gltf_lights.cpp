@@ -45,7 +45,7 @@ bool read_light(const tinygltf::Light& source, const std::string& where, Punctua
 }  // namespace
 
 std::vector<PunctualLight> read_gltf_lights(const GltfDocument& document, const std::vector<GltfPlacement>& placements,
-                                            const GltfReport& report) {
+                                            const SceneFrame& frame, const GltfReport& report) {
     std::vector<PunctualLight> result;
     std::size_t out_of_range = 0, unusable = 0;
     for (const GltfPlacement& placement : placements) {
@@ -54,12 +54,16 @@ std::vector<PunctualLight> read_gltf_lights(const GltfDocument& document, const 
         out_of_range += !read_light(document.model.lights[index],
                                     fmt::format("extensions.KHR_lights_punctual.lights[{}]", index), light, report);
         const auto& rows = placement.to_world.rows;
-        light.position = placement.to_world.column(3);
+        light.position = frame.to_local(placement.to_world.exact_point({0, 0, 0})).rounded();
         const double size = std::hypot(rows[0][2], rows[1][2], rows[2][2]);
         const auto along = [&](std::size_t r) { return static_cast<float>(-rows[r][2] / size); };
         light.direction = {along(0), along(1), along(2)};
         const bool aims = light.kind == PunctualLight::Kind::point || is_finite(light.direction);
         const bool placed = light.kind == PunctualLight::Kind::directional || is_usable_position(light.position);
+        if (light.kind != PunctualLight::Kind::directional) {  // light falls off with the square of units
+            light.intensity = (Vec3d(light.intensity) * (1 / (frame.unit * frame.unit))).rounded();
+            light.range = static_cast<float>(double{light.range} / frame.unit);
+        }
         if (!aims || !placed) {
             ++unusable;
             continue;

@@ -11,9 +11,9 @@ Vec3 Transform::point(Vec3 p) const {
     return {row(rows[0]), row(rows[1]), row(rows[2])};
 }
 
-Vec3 Transform::column(int axis) const {
-    const auto c = static_cast<std::size_t>(axis);
-    return {static_cast<float>(rows[0][c]), static_cast<float>(rows[1][c]), static_cast<float>(rows[2][c])};
+Vec3d Transform::exact_point(Vec3d p) const {
+    const auto row = [&](const std::array<double, 4>& r) { return r[0] * p.x + r[1] * p.y + r[2] * p.z + r[3]; };
+    return {row(rows[0]), row(rows[1]), row(rows[2])};
 }
 
 double Transform::determinant() const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "tracer/scene/scene_frame.hpp"
 #include "tracer/vec.hpp"
 
 namespace raycache::tracer {
@@ -13,7 +14,7 @@ struct Transform {
     std::array<std::array<double, 4>, 3> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
     Vec3 point(Vec3) const;
-    Vec3 column(int axis) const;  ///< image of a unit vector, translation for axis 3
+    Vec3d exact_point(Vec3d) const;
     double determinant() const;
 };
 

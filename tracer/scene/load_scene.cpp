@@ -86,30 +86,29 @@ std::size_t find_camera(const Scene& scene, const std::string& wanted) {
         wanted, scene.name, fmt::join(names, ", "), scene.cameras.size() - 1, did_you_mean(wanted, names))));
 }
 
-std::string numbers_of(Vec3 v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+std::string numbers_of(Vec3d v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
 
-void aim(Camera& camera, Vec3 eye, Vec3 look_at) {
-    if (!is_finite(eye) || !is_finite(look_at))
+void aim(Camera& camera, Vec3d eye, Vec3d look_at, const SceneFrame& frame) {
+    if (!std::isfinite(dot(eye, {1, 1, 1})) || !std::isfinite(dot(look_at, {1, 1, 1})))
         throw UsageError(
             fmt::format("camera: expected an eye and a look-at point of finite numbers, found {} and {}; "
                         "give three numbers for each",
                         numbers_of(eye), numbers_of(look_at)));
     for (const auto& [point, option] : {std::pair{eye, "--eye"}, std::pair{look_at, "--look-at"}})
-        if (!is_usable_position(point))
+        if (!is_usable_position(point.rounded()))
             throw UsageError(
                 fmt::format("{} {}: expected a point within {:g} m of the origin on each axis, found one "
                             "beyond; move it closer",
                             option, numbers_of(point), max_coordinate));
-    const double x = double{look_at.x} - eye.x, y = double{look_at.y} - eye.y, z = double{look_at.z} - eye.z;
-    const double distance = std::hypot(x, y, z);
+    const Vec3d way = look_at - eye;
+    const double distance = std::hypot(way.x, way.y, way.z);
     if (!(distance > 0))
         throw UsageError(fmt::format("camera: expected a look-at point apart from the eye, found both at {}; move one",
                                      numbers_of(eye)));
     camera.name = "eye";
-    camera.problem.clear();
-    camera.eye = eye;
-    camera.forward = {static_cast<float>(x / distance), static_cast<float>(y / distance),
-                      static_cast<float>(z / distance)};
+    camera.problem = problem_of_eye(eye, frame);
+    camera.eye = frame.to_local(eye).rounded();
+    camera.forward = (way * (1 / distance)).rounded();
     camera.up = orthogonal_up(camera.forward, {0, 1, 0});
 }
 
@@ -121,7 +120,7 @@ void choose_camera(Scene& scene, const SceneRequest& request) {
                                      request.eye ? "an eye" : "a look-at point"));
     if (request.eye) {
         Camera camera = scene.cameras.front();
-        aim(camera, *request.eye, *request.look_at);
+        aim(camera, *request.eye, *request.look_at, scene.frame);
         scene.cameras.insert(scene.cameras.begin(), camera);
     }
     if (request.vertical_fov) {

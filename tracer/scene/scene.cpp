@@ -1,5 +1,6 @@
 #include "tracer/scene/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "traces/printable.hpp"
@@ -16,12 +17,20 @@ Box Scene::bounds() const {
     return box;
 }
 
-float Scene::offset_scale_of(const Box& bounds) {
-    const float extent = max_component(bounds.upper - bounds.lower);
-    constexpr float large = 256;
-    constexpr int below_large = 5;  // far fewer ulps than a small scene's: positions grow with it
-    if (!(extent > 0) || !std::isfinite(extent) || (extent >= 1 && extent < large)) return 1;
-    return std::ldexp(1.0F, std::ilogb(extent) - (extent < 1 ? 0 : below_large));
+float Scene::find_giant_above() const {
+    constexpr std::size_t most_samples = 65536;
+    constexpr float many_times = 16384;  // with the distance that Surface keeps: a 32nd of the median
+    const std::size_t stride = std::max<std::size_t>(1, triangle_count() / most_samples);
+    std::vector<float> widths;
+    for (std::size_t t = 0; t < triangle_count(); t += stride) {
+        Box box;
+        for (std::size_t k = 0; k < 3; ++k) box.add(positions[indices[3 * t + k]]);
+        if (const float width = max_component(box.upper - box.lower); width > 0) widths.push_back(width);
+    }
+    if (widths.empty()) return std::numeric_limits<float>::infinity();
+    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+    std::nth_element(widths.begin(), middle, widths.end());
+    return *middle * many_times;
 }
 
 }  // namespace raycache::tracer

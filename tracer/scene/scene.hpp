@@ -1,16 +1,18 @@
-// A scene as the rest of the tracer sees it: one flat list of world-space triangles. Instances are already expanded.
-// Metres, Y up, right-handed; colours are linear Rec. 709.
+// A scene as the rest of the tracer sees it: one flat list of triangles in one space, the world's but for its frame.
+// Instances are already expanded. Metres, Y up, right-handed; colours are linear Rec. 709.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tracer/image.hpp"
+#include "tracer/scene/scene_frame.hpp"
 #include "tracer/vec.hpp"
 #include "traces/memory_budget.hpp"
 
@@ -71,7 +73,7 @@ struct Material {
 /// A pinhole camera.
 struct Camera {
     std::string name;
-    Vec3 eye{0, 0, 0};
+    Vec3 eye{0, 0, 0};        ///< in the scene's frame, as vertices are
     Vec3 forward{0, 0, -1};   ///< unit
     Vec3 up{0, 1, 0};         ///< unit, orthogonal to forward
     float vertical_fov = 45;  ///< degrees, in (0, 180)
@@ -107,7 +109,8 @@ struct Scene {
     std::uint64_t hash = 0;          ///< XXH3-64 of the source bytes (a .gltf: of its buffers and images too)
     std::vector<std::string> files;  ///< that it was read from; none of a built-in scene
 
-    std::vector<Vec3> positions;  ///< world space, all finite
+    SceneFrame frame;             ///< of all positions here; the world itself of most scenes
+    std::vector<Vec3> positions;  ///< all finite
     std::vector<Vec3> normals;    ///< unit, one per position, or empty if no mesh has any; (0,0,0) = face normal
     std::vector<Vec2> texcoords;  ///< one per position, or empty if no mesh has any
     std::vector<std::vector<Vec2>> more_texcoords;  ///< further layers, each one per position
@@ -120,9 +123,9 @@ struct Scene {
     Vec3 sky{0, 0, 0};            ///< constant radiance from outside, 0 = none
     std::optional<Sun> sun;
     std::vector<PunctualLight> punctual_lights;
-    /// Unit of the distance that rays keep from the surface they leave (Surface::leave). 1 where the largest extent is
-    /// 1 to 256, else a power of two in proportion to it. PreparedScene sets it.
-    float offset_scale = 1;
+    /// Triangles wider than this are giants beside the others: float tells less than the others' size about where on
+    /// them a ray ends, so that is done in double (EmbreeScene, Surface::leave). PreparedScene sets it.
+    float giant_above = std::numeric_limits<float>::infinity();
     /// Charged with what the scene's source made us allocate; for what is built on it. May be missing.
     std::shared_ptr<MemoryBudget> memory;
 
@@ -130,8 +133,8 @@ struct Scene {
     /// Throws Error where the budget has no room for `bytes` more. To be called before they are allocated for `what`.
     void charge(std::uint64_t bytes, const char* what) const;
     Box bounds() const;
-    /// `offset_scale` of a scene with these bounds.
-    static float offset_scale_of(const Box& bounds);
+    /// `giant_above` of such triangles: 16384 times their median width.
+    float find_giant_above() const;
 };
 
 /// Where a scene comes from and how it is to be lit and seen.
@@ -140,7 +143,7 @@ struct SceneRequest {
     std::uint64_t detail = 0;  ///< built-in scenes: wanted number of triangles; 0 = the scene's default
     enum class Sky { automatic, on, off } sky = Sky::automatic;  ///< automatic: on where the file has no emitter
     std::string camera;                                          ///< name or index; empty = the first
-    std::optional<Vec3> eye, look_at;                            ///< both or neither; override `camera`
+    std::optional<Vec3d> eye, look_at;                           ///< in the world; both or neither; override `camera`
     std::optional<float> vertical_fov;                           ///< degrees; overrides the camera's
 };
 
