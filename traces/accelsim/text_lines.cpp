@@ -9,8 +9,6 @@ namespace raycache::traces {
 
 namespace {
 
-constexpr std::size_t most_line_bytes = 1'000'000;
-
 /// One line of a message, whatever was in the file.
 std::string excerpt(std::string_view text) {
     return printable_line(text.substr(0, 60)) + (text.size() > 60 ? "…" : "");

@@ -1,10 +1,14 @@
 // A place in a text that is read, for the words of a refusal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace raycache::traces {
+
+/// Longer lines are refused.
+inline constexpr std::size_t most_line_bytes = 1'000'000;
 
 class TextPlace {
 public:

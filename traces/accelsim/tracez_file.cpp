@@ -15,8 +15,7 @@ namespace raycache::traces {
 namespace {
 
 constexpr std::uint64_t most_header_bytes = 1 << 20;
-constexpr std::size_t most_line_bytes = 1'000'000;
-constexpr std::size_t window_bytes = 1 << 16;
+constexpr std::size_t buffer_bytes = 1 << 16;
 
 /// Values one after the other, read ahead a window at a time.
 class Cursor {
@@ -31,7 +30,7 @@ public:
                                     path_, at_, sizeof(T), end_ - at_));
         if (at_ < from_ || at_ + sizeof(T) > from_ + window_.size()) {
             from_ = at_;
-            file_.read(at_, std::min<std::uint64_t>(window_bytes, end_ - at_), window_);
+            file_.read(at_, std::min<std::uint64_t>(buffer_bytes, end_ - at_), window_);
         }
         const T value = load<T>(window_.data() + (at_ - from_));
         at_ += sizeof(T);
@@ -48,9 +47,9 @@ private:
     Bytes window_;
 };
 
-class Parser : public TextPlace {
+class TracezParser : public TextPlace {
 public:
-    Parser(const std::string& path, const TracegReader::Use& use, const TracegOptions& options)
+    TracezParser(const std::string& path, const TracegReader::Use& use, const TracegOptions& options)
         : path_(path), file_(path), reader_(use, options), context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
         if (!context_) throw std::bad_alloc();
     }
@@ -150,8 +149,8 @@ private:
         text_.clear();
         for (std::size_t left = 1; left != 0;) {
             const std::size_t before = text_.size();
-            text_.resize(before + window_bytes);
-            ZSTD_outBuffer out{text_.data() + before, window_bytes, 0};
+            text_.resize(before + buffer_bytes);
+            ZSTD_outBuffer out{text_.data() + before, buffer_bytes, 0};
             const std::size_t taken = in.pos;
             left = ZSTD_decompressStream(context_.get(), &out, &in);
             text_.resize(before + out.pos);
@@ -202,7 +201,7 @@ bool looks_like_tracez(const std::string& path) {
 
 TracegKernel parse_tracez(const std::string& path, const std::function<void(std::uint64_t, GlobalLoad&)>& load,
                           const TracegOptions& options) {
-    return Parser(path, load, options).run();
+    return TracezParser(path, load, options).run();
 }
 
 }  // namespace raycache::traces

@@ -18,7 +18,7 @@ namespace {
 
 using Use = std::function<void(std::uint64_t, std::uint64_t)>;
 
-std::string_view trimmed(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
     text.remove_prefix(std::min(text.find_first_not_of(" \t\""), text.size()));
     return text.substr(0, text.find_last_not_of(" \t\"") + 1);
 }
@@ -42,10 +42,10 @@ void check_end(std::uint64_t address, std::uint64_t bytes, const TextPlace& plac
 
 void read_dinero(TextLines& lines, std::uint64_t bytes, const Use& use, AddressStream& found) {
     for (std::string_view line; lines.next(line);) {
-        std::string_view rest = trimmed(line);
+        std::string_view rest = unquoted(line);
         if (rest.empty() || rest[0] == '#') continue;
         const std::string_view label = rest.substr(0, rest.find_first_of(" \t"));
-        rest = trimmed(rest.substr(label.size()));
+        rest = unquoted(rest.substr(label.size()));
         const std::string_view digits = rest.substr(0, rest.find_first_of(" \t"));
         const auto address = number(digits, 16);
         if (label.size() != 1 || label[0] < '0' || label[0] > '4')
@@ -71,7 +71,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
     for (;;) {
         const std::size_t comma = line.find(',');
-        fields.push_back(trimmed(line.substr(0, comma)));
+        fields.push_back(unquoted(line.substr(0, comma)));
         if (comma == std::string_view::npos) return fields;
         line.remove_prefix(comma + 1);
     }
@@ -107,7 +107,7 @@ void read_csv(TextLines& lines, std::uint64_t bytes, const Use& use, AddressStre
     std::optional<Columns> columns;
     std::size_t count = 0;
     for (std::string_view line; lines.next(line);) {
-        if (trimmed(line).empty()) continue;
+        if (unquoted(line).empty()) continue;
         constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
         if (!columns && line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
         const std::vector<std::string_view> fields = fields_of(line);

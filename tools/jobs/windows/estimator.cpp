@@ -16,7 +16,7 @@
 namespace raycache::tools {
 namespace {
 
-constexpr std::uint32_t first_look = 8, least_blocks = 2;
+constexpr std::uint32_t first_look = 8, fewest_blocks = 2;
 constexpr double all_error = 0.05;  ///< of a 95 % interval
 
 tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
@@ -167,7 +167,7 @@ void Estimator::run(const std::string& baseline, Clock::time_point start) {
 void Estimator::spend_budget(const std::string& baseline, Clock::time_point start) {
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     const double budget = settings_.time_budget, prepared = seconds();
-    look(least_blocks, baseline);
+    look(fewest_blocks, baseline);
     if (const double took = seconds(); took > budget && worst_.error > settings_.target_error) {
         observer_.warn(
             fmt::format("the time budget of {:g} s is less than an interval takes, {:.1f} s: {:.1f} s until the scene "
