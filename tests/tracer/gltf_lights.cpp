@@ -16,7 +16,7 @@ SquareFile lit_by(const json& light, const json& node = {{"translation", {0, 0, 
     SquareFile file(grey(0.5));
     json with_light = node;
     with_light["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    file.doc["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+    file.doc["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
     file.doc["extensionsUsed"] = {"KHR_lights_punctual"};
     file.finish();
     file.node(with_light);

@@ -144,7 +144,8 @@ TEST_CASE("loads near each other and those of far arrays keep regions without pa
     const Addresses near{0x7f0000000000, 0x7f0000100000}, far{0x7f8000000000, 0x7f8000100000};
     const auto found = c.import_text(head() + block({load("LDG.E.U8", near), load("LDG.E.U8", far)}));
     CHECK(found == std::vector<Access>{{0, 0, 3, 1, near}, {0, 0, 3, 1, far}});
-    for (const Region& region : Reader(c.out).header().regions) CHECK(region.pages.empty());
+    const Reader reader(c.out);
+    for (const Region& region : reader.header().regions) CHECK(region.pages.empty());
 }
 
 TEST_CASE("objects that no array has at multiples of their size are read, too") {
