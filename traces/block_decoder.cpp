@@ -247,8 +247,8 @@ BlockHead Decoder::decode(const Header& header, std::span<const std::uint8_t> bl
     origin_ = origin;
     const std::uint8_t* stored = block.data() + format::block_head_bytes;
     for (unsigned s = 0; s < format::streams; ++s) {
-        raw_[s].resize(head.sizes[s].raw);
-        decompress({stored, head.sizes[s].stored}, raw_[s], origin + static_cast<std::uint64_t>(stored - block.data()));
+        decompress({stored, head.sizes[s].stored}, head.sizes[s].raw,
+                   origin + static_cast<std::uint64_t>(stored - block.data()), raw_[s]);
         stored += head.sizes[s].stored;
     }
     control_ = ByteReader(raw_[format::control]);

@@ -46,13 +46,6 @@ ZSTD_DCtx* decompressor() {
     return context.get();
 }
 
-void check_content_size(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin& origin) {
-    const unsigned long long content = ZSTD_getFrameContentSize(stored.data(), stored.size());
-    if (content != size)
-        refuse(origin, "zstd frame", fmt::format("{} bytes of content", size),
-               content >= ZSTD_CONTENTSIZE_ERROR ? "no readable size" : fmt::format("{} bytes", content));
-}
-
 }  // namespace
 
 std::size_t compress(std::span<const std::uint8_t> raw, Effort effort, Bytes& out) {
@@ -66,13 +59,22 @@ std::size_t compress(std::span<const std::uint8_t> raw, Effort effort, Bytes& ou
     return size;
 }
 
-void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin& origin) {
-    if (raw.empty() && stored.empty()) return;
-    check_content_size(stored, raw.size(), origin);
-    const std::size_t size = ZSTD_decompressDCtx(decompressor(), raw.data(), raw.size(), stored.data(), stored.size());
-    if (ZSTD_isError(size)) refuse(origin, "zstd frame", "a whole frame", ZSTD_getErrorName(size));
-    if (size != raw.size())
-        refuse(origin, "zstd frame", fmt::format("{} bytes of content", raw.size()), fmt::format("{} bytes", size));
+void check_content_size(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin& origin) {
+    if (size == 0 && stored.empty()) return;
+    const unsigned long long content = ZSTD_getFrameContentSize(stored.data(), stored.size());
+    if (content != size)
+        refuse(origin, "zstd frame", fmt::format("{} bytes of content", size),
+               content >= ZSTD_CONTENTSIZE_ERROR ? "no readable size" : fmt::format("{} bytes", content));
+}
+
+void decompress(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin& origin, Bytes& raw) {
+    check_content_size(stored, size, origin);
+    raw.resize(size);
+    if (stored.empty()) return;
+    const std::size_t found = ZSTD_decompressDCtx(decompressor(), raw.data(), raw.size(), stored.data(), stored.size());
+    if (ZSTD_isError(found)) refuse(origin, "zstd frame", "a whole frame", ZSTD_getErrorName(found));
+    if (found != size)
+        refuse(origin, "zstd frame", fmt::format("{} bytes of content", size), fmt::format("{} bytes", found));
 }
 
 std::uint64_t pieces_memory(std::span<const std::uint8_t> stored) {

@@ -20,8 +20,12 @@ enum class Effort {
 /// Appends one zstd frame that holds `raw` (nothing for no bytes); returns the bytes appended.
 std::size_t compress(std::span<const std::uint8_t> raw, Effort, Bytes& out);
 
-/// Fills `raw`, whose size the caller has bounded, from one zstd frame; refuses any other content size.
-void decompress(std::span<const std::uint8_t> stored, std::span<std::uint8_t> raw, const Origin&);
+/// Refuses a zstd frame that does not say that it holds `size` bytes: to be asked before memory for them is taken.
+void check_content_size(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin&);
+
+/// Makes `raw` the content of one zstd frame, `size` bytes, which the caller has bounded. Refuses any other content
+/// size before it takes memory for it.
+void decompress(std::span<const std::uint8_t> stored, std::uint64_t size, const Origin&, Bytes& raw);
 
 /// Bytes of memory that decompress_pieces() needs for this frame.
 std::uint64_t pieces_memory(std::span<const std::uint8_t> stored);

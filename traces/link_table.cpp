@@ -69,6 +69,7 @@ void decode_links(std::span<Region> regions, unsigned self, LinkPrediction predi
                   std::span<const std::uint8_t> stored, const Origin& origin) {
     Region& region = regions[self];
     const std::size_t count = std::size_t{region.degree} * region.count;
+    check_content_size(stored, std::uint64_t{count} * 4, origin);
     region.links.assign(count, 0);
     std::size_t at = 0;  // all lowest bytes come first, then all second ones …
     unsigned shift = 0;

@@ -64,8 +64,8 @@ std::uint64_t decode_pages(Region& region, unsigned index, std::span<const std::
     budget.charge(count * sizeof(std::uint64_t), origin.path, "pages of its regions");
     const MemoryHold raw_hold(budget, count * sizeof(std::uint64_t), origin.path,
                               "decompressing the pages of its regions");
-    Bytes raw(count * sizeof(std::uint64_t));
-    decompress(stored.subspan(head, bytes), raw, origin + head);
+    Bytes raw;
+    decompress(stored.subspan(head, bytes), count * sizeof(std::uint64_t), origin + head, raw);
     std::vector<std::uint64_t> numbers(count);
     std::uint64_t number = 0;
     for (std::uint64_t i = 0; i < count; ++i)

@@ -88,8 +88,8 @@ void mutate_stream(Bytes& block, std::mt19937& random) {
             append(changed, from);
             continue;
         }
-        Bytes content(raw[s]);
-        if (!content.empty()) decompress(from, content, {"fuzz", 0});
+        Bytes content;
+        decompress(from, raw[s], {"fuzz", 0}, content);
         fuzz::mutate(content, content.size() + 16);
         const std::size_t size = compress(content, Effort::fast, changed);
         store(changed.data() + 48 + 8 * s, static_cast<std::uint32_t>(content.size()));

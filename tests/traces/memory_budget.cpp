@@ -5,6 +5,8 @@
 
 #include "tests/traces/files.hpp"
 #include "traces/accelsim/import.hpp"
+#include "traces/compression.hpp"
+#include "traces/link_table.hpp"
 #include "traces/reader.hpp"
 #include "traces/rtwarp/import.hpp"
 #include "traces/verify.hpp"
@@ -64,6 +66,22 @@ TEST_CASE("a budget adds up, refuses what is too much and takes back") {
     budget.release(60);
     CHECK_NOTHROW(budget.charge(100, "", ""));
     CHECK_THROWS_AS(budget.charge(~std::uint64_t{0}, "", ""), MemoryError);
+}
+
+TEST_CASE("a frame that does not hold what a file says takes no memory before it is refused") {
+    const Bytes few(10, 7);
+    Bytes stored, raw;
+    compress(few, Effort::small, stored);
+    constexpr std::uint64_t claimed = std::uint64_t{1} << 50;  // more than any machine has
+    CHECK_THROWS_WITH(decompress(stored, claimed, {}, raw), Catch::Contains("found 10 bytes"));
+    CHECK(raw.capacity() == 0);
+    std::vector<Region> regions(1);
+    regions[0].degree = 16;
+    regions[0].count = (1U << 30) - 1;
+    CHECK_THROWS_WITH(decode_links(regions, 0, LinkPrediction::element, stored, {}), Catch::Contains("found 10 bytes"));
+    CHECK(regions[0].links.capacity() == 0);
+    decompress(stored, few.size(), {}, raw);
+    CHECK(raw == few);
 }
 
 TEST_CASE("sizes are told in binary units") {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-
 #include "traces/accelsim/text_lines.hpp"
 #include "traces/accelsim/traceg_reader.hpp"
 #include "traces/accelsim/tracez_file.hpp"
@@ -38,14 +36,6 @@ private:
         return false;
     }
 
-    /// What stands behind "KEY = ", if the line has this key.
-    std::optional<std::string_view> value_of(std::string_view key) const {
-        if (!line_.starts_with(key)) return std::nullopt;
-        const std::string_view rest = line_.substr(key.size());
-        if (!rest.starts_with(" = ")) return std::nullopt;
-        return rest.substr(3);
-    }
-
     [[noreturn]] void refuse_outside() const {
         if (count_numbers_before(line_) >= 4)
             lines_.refuse("between thread blocks", "#BEGIN_TB", "an instruction: a trace before post-processing",
@@ -62,12 +52,12 @@ private:
                 return;
             }
             if (line_[0] == '#' || line_.starts_with("cluster ")) continue;
-            if (const auto at = value_of("thread block")) {
+            if (const auto at = TracegReader::value_of(line_, "thread block")) {
                 reader_.coordinates(TracegReader::triple("thread block", *at, lines_), lines_);
-            } else if (const auto text = value_of("warp")) {
+            } else if (const auto text = TracegReader::value_of(line_, "warp")) {
                 reader_.begin_warp(TracegReader::number("warp", *text, lines_), lines_);
                 in_warp = true;
-            } else if (const auto count = value_of("insts")) {
+            } else if (const auto count = TracegReader::value_of(line_, "insts")) {
                 if (!in_warp) lines_.refuse("thread block", "warp = N before its instructions", line_);
                 read_warp(TracegReader::number("insts", *count, lines_));
                 in_warp = false;
@@ -80,7 +70,7 @@ private:
 
     void read_warp(std::uint64_t instructions) {
         for (std::uint64_t i = 0; i < instructions; ++i) {
-            if (!next_full_line() || line_[0] == '#' || value_of("warp"))
+            if (!next_full_line() || line_[0] == '#' || TracegReader::value_of(line_, "warp"))
                 lines_.refuse("warp", fmt::format("{} instructions", instructions), fmt::format("{}", i));
             reader_.instruction(line_, lines_);
         }

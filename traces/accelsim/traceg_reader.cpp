@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <optional>
 #include <string>
 
 #include "traces/record.hpp"
@@ -14,14 +13,6 @@ namespace raycache::traces {
 namespace {
 
 constexpr unsigned newest_version = 6, first_without_places = 3;
-
-/// What stands behind "KEY = ", if the line has this key.
-std::optional<std::string_view> value_of(std::string_view line, std::string_view key) {
-    if (!line.starts_with(key)) return std::nullopt;
-    std::string_view rest = line.substr(key.size());
-    if (!rest.starts_with(" = ")) return std::nullopt;
-    return rest.substr(3);
-}
 
 /// The product of three sizes.
 std::uint64_t volume(std::string_view what, const std::array<std::uint64_t, 3>& sizes, std::uint64_t most,
@@ -49,6 +40,13 @@ std::uint64_t address(std::string_view what, std::string_view text, const TextPl
 }
 
 }  // namespace
+
+std::optional<std::string_view> TracegReader::value_of(std::string_view line, std::string_view key) {
+    if (!line.starts_with(key)) return std::nullopt;
+    const std::string_view rest = line.substr(key.size());
+    if (!rest.starts_with(" = ")) return std::nullopt;
+    return rest.substr(3);
+}
 
 std::uint64_t TracegReader::number(std::string_view what, std::string_view text, const TextPlace& place) {
     std::uint64_t value = 0;

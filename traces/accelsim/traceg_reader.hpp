@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,8 @@ public:
 
     bool in_block() const { return in_block_; }
 
+    /// What stands behind "KEY = ", if the line has this key.
+    static std::optional<std::string_view> value_of(std::string_view line, std::string_view key);
     static std::uint64_t number(std::string_view what, std::string_view text, const TextPlace&);
     /// Three numbers with commas between them.
     static std::array<std::uint64_t, 3> triple(std::string_view what, std::string_view text, const TextPlace&);

@@ -60,9 +60,8 @@ private:
         if (warp.elements.size() + access.lanes() > format::max_block_lanes / 2)
             throw Error(fmt::format("{}: warp {}: expected at most {} lane accesses, found more; trace a smaller part",
                                     pass_.file, number, format::max_block_lanes / 2));
-        if (warp.records.empty() && pass_.threads_are_rays)
-            warp.records.push_back({0, ray_start, RayType::camera, 0, 0});
-        if (pass_.threads_are_rays) warp.records.front().mask |= access.mask;
+        if (warp.records.empty()) warp.records.push_back({0, ray_start, RayType::camera, 0, 0});
+        warp.records.front().mask |= access.mask;
         const std::uint8_t region = plan_.place(access, warp.elements);
         warp.records.push_back({access.mask, region, RayType::camera, 0, 0});
     }
@@ -100,7 +99,7 @@ private:
         if (block_.empty()) return;
         writer_.append(encode_block(header_, block_));
         for (const WarpTrace& warp : block_) {
-            const std::size_t starts = pass_.threads_are_rays && !warp.records.empty();
+            const std::size_t starts = warp.records.empty() ? 0 : 1;
             budget_.release(record_bytes * (warp.records.size() - starts) + lane_bytes * warp.elements.size());
         }
         block_.clear();

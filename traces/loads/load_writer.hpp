@@ -31,12 +31,10 @@ struct LoadPass {
     std::function<void(Header&)> finish = [](Header&) {};
     std::size_t launches = 1;
     std::string file;  ///< for errors
-    /// Each thread that loads anything begins a ray.
-    bool threads_are_rays = true;
 };
 
-/// Writes `output`. `header` without regions, launches and warps, which follow. Throws Error if there is no load, or if
-/// the format cannot have the loads.
+/// Writes `output`: each thread that loads anything begins a ray. `header` without regions, launches and warps, which
+/// follow. Throws Error if there is no load, or if the format cannot have the loads.
 void write_loads(const LoadPass&, Header header, const std::string& output);
 
 }  // namespace raycache::traces
