@@ -141,7 +141,7 @@ class Extending(unittest.TestCase):
         # A layout: bvh2 once more, under another name.
         like = cls.copy.read("tracer/bvh/layouts/bvh2_breadth_first.hpp")
         text = like.replace("Bvh2BreadthFirst", "Bvh2Again").replace("bvh2-breadth-first", "bvh2-again")
-        cls.copy.write("tracer/bvh/layouts/bvh2_again.hpp", text.replace("breadth_first(bvh)", "depth_first(bvh)"))
+        cls.copy.write("tracer/bvh/layouts/bvh2_again.hpp", text.replace("<breadth_first>", "<depth_first>"))
         cls.count("layout", lambda copy: (
             copy.insert("tracer/bvh/layouts/list.hpp", '/bvh2.hpp"', '#include "tracer/bvh/layouts/bvh2_again.hpp"'),
             copy.replace("tracer/bvh/layouts/list.hpp", "LayoutList<Bvh2, ", "LayoutList<Bvh2, Bvh2Again, ")))

@@ -6,6 +6,7 @@
 #include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/simt/warp_traversal.hpp"
 #include "traces/error.hpp"
+#include "trees.hpp"
 
 using namespace raycache;
 using namespace raycache::tracer;
@@ -168,24 +169,11 @@ TEST_CASE("bvh2: only triangles whose material can have holes are marked") {
 
 TEST_CASE("bvh2: a tree too deep for the layout is refused in one line") {
     const Scene scene = quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
-    Bvh deep;
-    constexpr std::uint32_t levels = 97;
-    for (std::uint32_t i = 0; i < levels; ++i) {  // each inner node: a leaf, then the rest
-        deep.nodes.push_back({scene.bounds(), 2 * i + 2, 0});
-        deep.nodes.push_back({scene.bounds(), i, 1});
-        deep.triangles.push_back(0);
-    }
-    deep.nodes.push_back({scene.bounds(), levels, 1});
-    deep.triangles.push_back(1);
-    deep.depth = levels;
+    const Bvh deep = chain(scene, 97);
     CHECK_THROWS_AS(Bvh2::make(deep, scene), Error);
     CHECK_THROWS_WITH(Bvh2::make(deep, scene), Catch::Contains("97 levels") && !Catch::Contains("\n"));
     // One level less fits, and its stack is deep enough (AddressSanitizer looks on).
-    deep.nodes.erase(deep.nodes.begin(), deep.nodes.begin() + 2);
-    for (Bvh::Node& node : deep.nodes)
-        if (!node.is_leaf()) node.first -= 2;
-    deep.depth = 96;
-    const Bvh2 bvh = *Bvh2::make(deep, scene);
+    const Bvh2 bvh = *Bvh2::make(chain(scene, 96), scene);
     const TexelLayout texels(scene);
     NullRecorder recorder;
     WarpTraversal<Bvh2, NullRecorder> traversal(scene, bvh, texels, recorder);

@@ -69,4 +69,18 @@ inline Scene sticks() {
     return scene;
 }
 
+/// A chain: each inner node has a leaf of triangle 0 and the rest, the last one triangle 1. All boxes are the scene's.
+inline Bvh chain(const Scene& scene, std::uint32_t levels) {
+    Bvh deep;
+    for (std::uint32_t i = 0; i < levels; ++i) {
+        deep.nodes.push_back({scene.bounds(), 2 * i + 2, 0});
+        deep.nodes.push_back({scene.bounds(), i, 1});
+        deep.triangles.push_back(0);
+    }
+    deep.nodes.push_back({scene.bounds(), levels, 1});
+    deep.triangles.push_back(1);
+    deep.depth = levels;
+    return deep;
+}
+
 }  // namespace raycache::tracer::test

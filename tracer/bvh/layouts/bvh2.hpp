@@ -44,4 +44,12 @@ struct Bvh2 final : BvhLayout {
 /// levels).
 std::unique_ptr<Bvh2> make_bvh2(const Bvh&, const Scene&, const std::vector<std::uint32_t>& order);
 
+/// What a layout has that keeps its nodes in another order and is `bvh2` in all else.
+template <std::vector<std::uint32_t> (*order)(const Bvh&)>
+struct Bvh2InOrder {
+    static constexpr std::uint32_t max_leaf_size = Bvh2::max_leaf_size;
+    using Tree = Bvh2;
+    static std::unique_ptr<Bvh2> make(const Bvh& bvh, const Scene& scene) { return make_bvh2(bvh, scene, order(bvh)); }
+};
+
 }  // namespace raycache::tracer

@@ -3,21 +3,14 @@
 // apart.
 #pragma once
 
-#include <memory>
-
 #include "tracer/bvh/layouts/bvh2.hpp"
 #include "tracer/bvh/layouts/node_order.hpp"
 
 namespace raycache::tracer {
 
-struct Bvh2BreadthFirst {
+struct Bvh2BreadthFirst : Bvh2InOrder<breadth_first> {
     static constexpr const char* name = "bvh2-breadth-first";
     static constexpr const char* description = "as bvh2, with the nodes level by level from the root";
-    static constexpr std::uint32_t max_leaf_size = Bvh2::max_leaf_size;
-    using Tree = Bvh2;
-    static std::unique_ptr<Bvh2> make(const Bvh& bvh, const Scene& scene) {
-        return make_bvh2(bvh, scene, breadth_first(bvh));
-    }
 };
 
 }  // namespace raycache::tracer

@@ -1,6 +1,6 @@
-// Layout `cwbvh8`: the compressed wide BVH of H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray Traversal on GPUs
-// Through Compressed Wide BVHs, HPG 2017: nodes of 80 B with eight quantised boxes in the order of octants, triangles
-// of 48 B, at most three to a leaf. Made of a binary tree with one triangle to a leaf (wide_tree.hpp).
+// Layout `cwbvh8`: the compressed wide BVH of H. Ylitie, T. Karras, S. Laine, Efficient Incoherent Ray Traversal on
+// GPUs Through Compressed Wide BVHs, HPG 2017: nodes of 80 B with eight quantised boxes in the order of octants,
+// triangles of 48 B, at most three to a leaf. Made of a binary tree with one triangle to a leaf (wide_tree.hpp).
 #pragma once
 
 #include <array>

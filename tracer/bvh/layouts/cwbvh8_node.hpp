@@ -1,5 +1,5 @@
 // A node of layout `cwbvh8`: 80 bytes with the quantised boxes of eight children (H. Ylitie, T. Karras, S. Laine:
-// Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017, section 3).
+// Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017).
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace raycache::tracer {
 
-/// A plane of the box of slot s, axis a, is origin[a] + lower[a][s] * scale(a), rounded to float once. Children that are
-/// nodes stand side by side from first_node on, in the order of their slots; triangles of all children that are leaves
-/// from first_triangle on.
+/// A plane of the box of slot s, axis a, is origin[a] + lower[a][s] * scale(a), rounded to float once. Children that
+/// are nodes stand side by side from first_node on, in the order of their slots; triangles of all children that are
+/// leaves from first_triangle on.
 struct alignas(16) Cwbvh8Node {
     float origin[3];           ///< lower corner of the node's box
     std::uint8_t exponent[3];  ///< of scale(): that of a float, with its bias
@@ -32,8 +32,8 @@ struct alignas(16) Cwbvh8Node {
 };
 static_assert(sizeof(Cwbvh8Node) == 80);
 
-/// Writes origin, exponents, and planes such that no decoded box is less than the child's. `boxes` by slot; an empty Box
-/// for an empty slot.
+/// Writes origin, exponents, and planes such that no decoded box is less than the child's. `boxes` by slot; an empty
+/// Box for an empty slot.
 void quantise(const Box& whole, const std::array<Box, 8>& boxes, Cwbvh8Node&);
 
 /// Gives each child the slot in which rays of most directions meet it in order: slot s lies in the octant whose bits
