@@ -8,12 +8,19 @@ namespace raycache::cachesim {
 
 namespace {
 
-std::uint32_t instructions_of(const Timing& timing, const traces::Region& region) {
-    switch (traces::role_of(region.kind).charge) {
+std::uint32_t whole(double number) {
+    const double most = traces::warp_lanes * 4096.0;  // more than any load asks for
+    return std::floor(number) == number ? static_cast<std::uint32_t>(std::min(number, most)) : 0;
+}
+
+}  // namespace
+
+std::uint32_t visit_instructions(const Timing& timing, traces::ObjectKind kind, unsigned children) {
+    switch (traces::role_of(kind).charge) {
         case traces::Charge::node:
-            return region.degree <= 2   ? timing.node_instructions
-                   : region.degree <= 4 ? timing.node4_instructions
-                                        : timing.node8_instructions;
+            return children <= 2   ? timing.node_instructions
+                   : children <= 4 ? timing.node4_instructions
+                                   : timing.node8_instructions;
         case traces::Charge::triangle:
             return timing.triangle_instructions;
         case traces::Charge::texel:
@@ -21,13 +28,6 @@ std::uint32_t instructions_of(const Timing& timing, const traces::Region& region
     }
     return 0;
 }
-
-std::uint32_t whole(double number) {
-    const double most = traces::warp_lanes * 4096.0;  // more than any load asks for
-    return std::floor(number) == number ? static_cast<std::uint32_t>(std::min(number, most)) : 0;
-}
-
-}  // namespace
 
 TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions, const LineIds& line_ids,
                        const Idealised& idealised, PortPath port_path)
@@ -48,7 +48,7 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
         shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
-        instructions.push_back(instructions_of(timing, regions[i]));
+        instructions.push_back(visit_instructions(timing, regions[i].kind, regions[i].degree));
     }
     if (timing.leaf_instructions > 0) leaves.emplace(regions);
 }

@@ -30,6 +30,9 @@ enum class PortPath {
     rule,  ///< every load by the rule for any load: what tests hold the fast path against
 };
 
+/// Instructions of a visit to an object beside its loads. `children`: of a node, as Region::degree says.
+std::uint32_t visit_instructions(const Timing&, traces::ObjectKind, unsigned children);
+
 struct TimedRules {
     /// `ids` number the lines of the regions and must outlive this object.
     TimedRules(const Gpu&, const std::vector<traces::Region>&, const LineIds& ids, const Idealised&,

@@ -2,21 +2,9 @@
 
 #include <algorithm>
 
+#include "cachesim/replay/timed/timed_rules.hpp"
+
 namespace raycache::bench {
-namespace {
-
-double instructions_of(const cachesim::Timing& t, std::size_t kind) {
-    switch (static_cast<traces::ObjectKind>(kind)) {
-        case traces::ObjectKind::node:
-            return t.node_instructions;
-        case traces::ObjectKind::triangle:
-            return t.triangle_instructions;
-        default:
-            return t.texel_instructions;
-    }
-}
-
-}  // namespace
 
 Demand& Demand::operator+=(const cachesim::LaunchStatistics& launch) {
     for (const cachesim::RayGroup& group : launch.groups) {
@@ -34,9 +22,11 @@ Demand& Demand::operator+=(const cachesim::LaunchStatistics& launch) {
 double roofline_cycles(const Demand& d, const cachesim::Gpu& gpu) {
     const cachesim::Timing& t = *gpu.timing;
     const double sector = gpu.l1().sector_bytes, sms = gpu.sms;
+    constexpr unsigned boxes_of_node = 2;  // of layout bvh2
     auto instructions = static_cast<double>(d.loads);
     for (std::size_t k = 0; k < d.accesses.size(); ++k)
-        instructions += static_cast<double>(d.accesses[k]) * instructions_of(t, k);
+        instructions += static_cast<double>(d.accesses[k]) *
+                        cachesim::visit_instructions(t, static_cast<traces::ObjectKind>(k), boxes_of_node);
     const double l2_bytes = sector * static_cast<double>(d.l2);
     const double dram_bytes_per_cycle = 1e3 * t.dram_gb_s / t.clock_mhz;
     return std::max({instructions * t.instruction_interval / (t.schedulers * sms),

@@ -1,14 +1,11 @@
 // raycache_tradeoff: error against CPU seconds of every way to answer a question (tools/tradeoff).
 #include <fmt/format.h>
 
-#include <exception>
-#include <functional>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include <nlohmann/json.hpp>
+#include "tools/bench/measurement.hpp"
 #include "tools/bench/tradeoff/ladder.hpp"
-#include "tools/jobs/numbers.hpp"
 #include "traces/error.hpp"
 
 using namespace raycache;
@@ -23,14 +20,6 @@ constexpr const char* usage =
     "  indices= work-groups= sm-windows= windows= timed-windows= fill-waves=    of a block; else as the program's\n"
     "Prints JSON.\n";
 
-class Talking : public tools::Observer {
-public:
-    void begin(const std::string& stage, std::uint64_t, const std::string&) override {
-        fmt::print(stderr, "==> {}\n", stage);
-    }
-    void warn(const std::string& line) override { fmt::print(stderr, "{}\n", line); }
-};
-
 bench::LadderSettings read(int argc, char** argv) {
     bench::LadderSettings s;
     tools::SamplingSettings& sampling = s.launches.sampling;
@@ -38,41 +27,17 @@ bench::LadderSettings read(int argc, char** argv) {
     s.gpu.names = {"rtx-3070"};
     std::vector<std::string> strategies;
     std::uint64_t spp = 64;
-    std::map<std::string, std::function<void(const std::string&)>> options{
-        {"scene", [&](const std::string& v) { s.launches.scene.source = v; }},
-        {"strategy", [&](const std::string& v) { strategies.push_back(v); }},
-        {"mu", [&](const std::string& v) { sampling.mu = v; }},
-        {"resolution", [&](const std::string& v) { sampling.resolution = v; }},
-        {"gpu", [&](const std::string& v) { s.gpu.names = {v}; }},
-        {"set", [&](const std::string& v) { s.gpu.changes.push_back(v); }},
-        {"l2-kib",
-         [&](const std::string& v) {
-             s.gpu.l2_kib = {tools::read_whole(v, "l2-kib", {1, 1U << 20})};
-         }},
-        {"spp", [&](const std::string& v) {
-             spp = tools::read_whole(v, "spp", {1, 1U << 20});
-         }}};
-    const auto count = [&](const std::string& name, std::uint32_t& of) {
-        options[name] = [&of, name](const std::string& v) {
-            of = static_cast<std::uint32_t>(tools::read_whole(v, name, {1, 1U << 20}));
-        };
-    };
-    count("drawings", s.drawings);
-    count("most-blocks", s.most_blocks);
-    count("indices", s.sizes.indices);
-    count("work-groups", s.sizes.work_groups);
-    count("sm-windows", s.sizes.sm_windows);
-    count("windows", s.sizes.windows);
-    count("timed-windows", s.sizes.timed_windows);
-    count("fill-waves", s.sizes.fill_waves);
-    for (int i = 1; i < argc; ++i) {
-        const std::string argument = argv[i];
-        const std::size_t at = std::min(argument.find('='), argument.size());
-        const auto option = options.find(argument.substr(0, at));
-        if (option == options.end() || at == argument.size())
-            throw UsageError(fmt::format("'{}'; expected NAME=VALUE\n{}", argument, usage));
-        option->second(argument.substr(at + 1));
-    }
+    bench::NameValues values;
+    values.text("scene", s.launches.scene.source);
+    values.text("strategy", [&](const std::string& v) { strategies.push_back(v); });
+    values.text("mu", sampling.mu);
+    values.text("resolution", sampling.resolution);
+    values.count("spp", spp);
+    values.count("drawings", s.drawings);
+    values.count("most-blocks", s.most_blocks);
+    values.gpu(s.gpu);
+    values.sizes(s.sizes);
+    values.read(argc, argv, usage);
     if (s.launches.scene.source.empty() || strategies.size() < 2)
         throw UsageError(fmt::format("a scene and two strategies at least are expected\n{}", usage));
     for (const std::string& strategy : strategies)
@@ -108,16 +73,9 @@ nlohmann::ordered_json to_json(const bench::Ladder& ladder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
+    return bench::measure("raycache_tradeoff", [&] {
         const bench::LadderSettings settings = read(argc, argv);
-        Talking observer;
+        bench::Talking observer;
         fmt::print("{}\n", to_json(bench::climb(settings, observer)).dump(2));
-    } catch (const UsageError& e) {
-        fmt::print(stderr, "raycache_tradeoff: error: {}\n", e.what());
-        return 2;
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "raycache_tradeoff: error: {}\n", e.what());
-        return 1;
-    }
-    return 0;
+    });
 }

@@ -1,6 +1,6 @@
 // Two models that simulate no cache: distinct sectors, and reuse distances. Both take the warps of a launch in waves of
-// as many as a GPU holds at once, a wave to its end before the next begins: CTA c on SM c mod sms, SMs in turn, resident
-// warps of each in turn, one access a turn.
+// as many as a GPU holds at once, a wave to its end before the next begins: CTA c on SM c mod sms, SMs in turn,
+// resident warps of each in turn, one access a turn.
 #pragma once
 
 #include <cstdint>
