@@ -37,8 +37,8 @@ std::string to_string(const StrategyName&);
 /// Throws UsageError for a part that no registry has, with the valid ones and the closest of them.
 void check_strategy_name(const StrategyName&);
 
-/// Of a trace: what tables call it. Its thread map is a column of its own, no part of its name; its layout is, unless it is
-/// the default.
+/// Of a trace: what tables call it. Its thread map is a column of its own, no part of its name; its layout is, unless it
+/// is the default.
 StrategyName strategy_name(const traces::Provenance&);
 
 /// A wavefront in the name's order, else `otherwise`.

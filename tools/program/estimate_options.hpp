@@ -18,9 +18,9 @@ struct EstimateOptions {
     /// `when_timed`: an option that makes --target-error be about something else, and what.
     void add(Command&, const std::string& when_timed);
 
-    /// From windows, unless the user asks for whole launches (--exact, --trace-samples, --counters, --heatmap) or something in
-    /// `launches` has no windows: then `why_exact` becomes a line to warn of. Sets the resolution of a real picture
-    /// where the user gives none.
+    /// From windows, unless the user asks for whole launches (--exact, --trace-samples, --counters, --heatmap) or
+    /// something in `launches` has no windows: then `why_exact` becomes a line to warn of. Sets the resolution of a
+    /// real picture where the user gives none.
     EstimateSettings settings(const Command&, LaunchSettings&, std::string& why_exact) const;
 };
 

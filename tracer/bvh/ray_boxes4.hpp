@@ -29,8 +29,8 @@ struct WideBoxRay {
     void set_t_max(float t) { t_max = _mm_set1_ps(t); }
 };
 
-/// Boxes hit, a bit each; writes where they are entered. A NaN stands in the first operand of min and max and is thereby
-/// ignored.
+/// Boxes hit, a bit each; writes where they are entered. A NaN stands in the first operand of min and max and is
+/// thereby ignored.
 inline unsigned test_four_boxes(const __m128 (&lower)[3], const __m128 (&upper)[3], const WideBoxRay& ray,
                                 __m128& entry) {
     __m128 near = ray.t_min, far = ray.t_max;

@@ -1,7 +1,7 @@
 // A binary tree with inner nodes left out, so that those kept have more children: what wide layouts are made of.
 //
 // Which to leave out is decided as H. Ylitie, T. Karras and S. Laine do (Efficient Incoherent Ray Traversal on GPUs
-// Through Compressed Wide BVHs, HPG 2017, section 3.2): dynamic programming finds the tree of the least surface area
+// Through Compressed Wide BVHs, HPG 2017): dynamic programming finds the tree of the least surface area
 // cost among all that arise from the binary one. A visit to a node and a test of a triangle cost the same, as they do
 // where the binary tree is built (bvh.hpp).
 #pragma once

@@ -1,4 +1,5 @@
-// WebP images by libwebp. OpenImageIO reads them too, but multiplies colours by alpha, which cannot be undone in 8 bits.
+// WebP images by libwebp. OpenImageIO reads them too, but multiplies colours by alpha, which cannot be undone in 8
+// bits.
 #pragma once
 
 #include <cstdint>

@@ -33,8 +33,8 @@ public:
     bool empty() const { return !sun_ && cumulative_.empty(); }
 
     /// One light for the surface point `from`, by two numbers in [0, 1). Emissive triangles, which shine from both
-    /// sides, and punctual lights are chosen by power; where there is a sun too, half of the samples go to it. The first number is used twice:
-    /// what selection leaves of it is stretched to [0, 1) again.
+    /// sides, and punctual lights are chosen by power; where there is a sun too, half of the samples go to it. The
+    /// first number is used twice: what selection leaves of it is stretched to [0, 1) again.
     LightSample sample(Vec3 from, Vec2 random) const;
 
     /// The density with which sample() aims at a point of an emissive triangle that a ray of unit direction met at

@@ -31,7 +31,8 @@ struct TexelPolygon {
     }
 };
 
-/// The part where sign * (coordinate - limit) >= 0 (I. Sutherland, G. Hodgman, "Reentrant polygon clipping", CACM 1974).
+/// The part where sign * (coordinate - limit) >= 0 (I. Sutherland, G. Hodgman, "Reentrant polygon clipping", CACM
+/// 1974).
 TexelPolygon clip_texels(const TexelPolygon& whole, double TexelPoint::*axis, double limit, double sign) {
     TexelPolygon part;
     for (std::size_t i = 0; i < whole.size; ++i) {

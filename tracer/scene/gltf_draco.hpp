@@ -6,8 +6,8 @@
 namespace raycache::tracer {
 
 /// Gives every primitive that has the extension accessors to its decoded vertices and indices, in place of those whose
-/// bytes are in the stream. Throws Error "PATH: mesh M primitive P: …" where a stream cannot be decoded or does not hold
-/// what the primitive says.
+/// bytes are in the stream. Throws Error "PATH: mesh M primitive P: …" where a stream cannot be decoded or does not
+/// hold what the primitive says.
 void decode_draco_primitives(GltfDocument&, const GltfReport&);
 
 }  // namespace raycache::tracer

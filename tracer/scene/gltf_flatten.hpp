@@ -18,9 +18,9 @@ constexpr std::uint64_t max_scene_triangles = (1ULL << 30) - 2;
 void check_scene_size(const std::vector<GltfPlacement>&, const std::vector<std::vector<GltfPrimitiveSource>>& sources,
                       const GltfReport&);
 
-/// Appends every placement of every primitive to `scene`, in its frame. A transform with a negative determinant turns the
-/// triangles round, so that their fronts stay fronts. Normals, texture coordinates and colours are filled for all vertices if any
-/// placed primitive has them.
+/// Appends every placement of every primitive to `scene`, in its frame. A transform with a negative determinant turns
+/// the triangles round, so that their fronts stay fronts. Normals, texture coordinates and colours are filled for all
+/// vertices if any placed primitive has them.
 void flatten_gltf_meshes(const std::vector<GltfPlacement>&, const std::vector<std::vector<GltfPrimitive>>& meshes,
                          Scene& scene, GltfLosses&);
 

@@ -178,16 +178,14 @@ void report_coarse_places(const GltfPlacedMeshes& meshes, const GltfFrame& frame
     if (vertices.count > 0)
         report.warning(fmt::format(
             "meshes have lost detail in the file itself ({}): node {}'s vertices lie {:g} m from its origin, where "
-            "floats "
-            "are {:.2g} m apart, in something {:.3g} m wide; give its vertices small coordinates and the distance to "
-            "the node's translation",
+            "floats are {:.2g} m apart, in something {:.3g} m wide; give its vertices small coordinates and the "
+            "distance to the node's translation",
             vertices.count, vertices.node, vertices.reach, vertices.step, vertices.size));
     if (places.count > 0)
         report.warning(fmt::format(
             "meshes stand too far for float from {}, on which the scene is centred ({}): node {}'s, {:.3g} m wide, "
-            "{:g} "
-            "m away, where floats are {:.2g} m apart; rays there are unreliable: export that part alone, or with its "
-            "camera as the file's first",
+            "{:g} m away, where floats are {:.2g} m apart; rays there are unreliable: export that part alone, or with "
+            "its camera as the file's first",
             place(frame.frame.origin), places.count, places.node, places.size, places.reach, places.step));
 }
 

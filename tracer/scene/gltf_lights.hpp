@@ -10,8 +10,8 @@
 namespace raycache::tracer {
 
 /// In the order of their placements. Intensities are taken in the unit of emissive materials (candela and lux beside
-/// nits). Throws Error for numbers that make no light; a cone or range out of its limits becomes the nearest in them, with
-/// one warning.
+/// nits). Throws Error for numbers that make no light; a cone or range out of its limits becomes the nearest in them,
+/// with one warning.
 std::vector<PunctualLight> read_gltf_lights(const GltfDocument&, const std::vector<GltfPlacement>&, const SceneFrame&,
                                             const GltfReport&);
 

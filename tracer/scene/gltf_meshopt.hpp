@@ -18,8 +18,8 @@ struct MeshoptView {
     std::string mode, filter;
 };
 
-/// `count` elements of `byte_stride` bytes. Throws Error "WHERE: …" where the members do not fit together or the bytes are
-/// no such stream.
+/// `count` elements of `byte_stride` bytes. Throws Error "WHERE: …" where the members do not fit together or the bytes
+/// are no such stream.
 std::vector<std::uint8_t> decode_meshopt(const MeshoptView&, std::span<const std::uint8_t> compressed,
                                          const std::string& where, const GltfReport&);
 

@@ -27,8 +27,8 @@ Transform gltf_local_transform(const GltfDocument&, int node, const GltfReport&)
 
 /// Walks the default scene, or the first one, or every root where the file has no scene. Leaves out what
 /// KHR_node_visibility hides, but for cameras. A skinned mesh stands where its joints do: its placement is the identity.
-/// Throws Error for a reference
-/// out of range, a node reached twice (a cycle, or two parents), and numbers that make no transform.
+/// Throws Error for a reference out of range, a node reached twice (a cycle, or two parents), and numbers that make no
+/// transform.
 GltfNodes place_gltf_nodes(const GltfDocument&, const GltfReport&);
 
 }  // namespace raycache::tracer

@@ -17,8 +17,8 @@ struct GltfSkin {
 /// Of every skin of the file. Throws Error for references out of range and too few inverse bind matrices.
 std::vector<GltfSkin> read_gltf_skins(const GltfDocument&, const GltfReport&);
 
-/// Moves vertex `v`, and its normal if there is one, to the world, by weights that are made to add up to 1. Leaves a vertex
-/// without weights where it is. Throws Error "WHERE: …" for a joint that the skin does not have.
+/// Moves vertex `v`, and its normal if there is one, to the world, by weights that are made to add up to 1. Leaves a
+/// vertex without weights where it is. Throws Error "WHERE: …" for a joint that the skin does not have.
 void bend_vertex(const GltfSkin&, const std::vector<GltfAccessor>& joints, const std::vector<GltfAccessor>& weights,
                  std::uint64_t v, Vec3& position, Vec3* normal, const std::string& where, const GltfReport&);
 

@@ -33,8 +33,8 @@ public:
     virtual std::uint32_t arrive(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) = 0;
     /// Reads textures, through the traversal; lanes on surfaces that reflect nothing end.
     virtual std::uint32_t shade(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) = 0;
-    /// Fills `p.shadow_rays` and `p.contribution` of the lanes returned: those that a light may reach. Reads textures of
-    /// emission through the traversal.
+    /// Fills `p.shadow_rays` and `p.contribution` of the lanes returned: those that a light may reach. Reads textures
+    /// of emission through the traversal.
     virtual std::uint32_t aim_at_light(std::uint32_t mask, std::uint32_t vertex, PathLanes& p) = 0;
     /// Adds the light of the lanes whose shadow ray met nothing.
     virtual void collect_light(std::uint32_t unblocked, PathLanes& p) const = 0;
