@@ -86,7 +86,7 @@ TEST_CASE("sinks are told which requests are counted") {
     REQUIRE(all.requests.size() == some.requests.size());
     for (std::size_t i = 0; i < all.requests.size(); ++i) {
         CHECK(std::get<7>(all.requests[i]));
-        CHECK(std::get<7>(some.requests[i]) == std::get<6>(some.requests[i]) < 10);
+        CHECK(std::get<7>(some.requests[i]) == (std::get<6>(some.requests[i]) < 10));
         CHECK(std::get<3>(all.requests[i]) == std::get<3>(some.requests[i]));
     }
 }
