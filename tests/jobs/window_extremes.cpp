@@ -45,12 +45,13 @@ tracer::Scene courtyard() {
     return load_scene(request, [](const std::string&) {});
 }
 
-Predicted estimated(tracer::Scene scene, const LaunchSettings& of, std::uint32_t blocks, Observer& observer) {
+Predicted estimated(tracer::Scene scene, const LaunchSettings& of, std::uint32_t blocks, Observer& observer,
+                    const std::vector<cachesim::Gpu>& all = gpus(),
+                    const std::vector<cachesim::Idealised>& in_time = {}) {
     const tracer::PreparedScene prepared(std::move(scene), {});
-    const auto all = gpus();
     EstimateSettings settings;
     settings.windows = true;
-    Estimator estimator(prepared, strategies_of(of), settings, all, {}, false, observer, {few(), 0});
+    Estimator estimator(prepared, strategies_of(of), settings, all, in_time, false, observer, {few(), 0});
     estimator.look(blocks, "cranley-patterson");
     return estimator.result();
 }
@@ -65,6 +66,15 @@ TEST_CASE("an estimate of one pixel and one sample is of what there is, with an 
         CHECK(row["steps_per_ray"]->mean > 0);
         CHECK(row["steps_per_ray"]->half_width == 0);  // the same pixel and sample in both blocks
     }
+}
+
+TEST_CASE("windows in time that begin and end at once are refused") {
+    GpuSettings gpu;
+    gpu.names = {"rtx-3070"};
+    gpu.changes = {"sms=1", "warps_per_cta=2"};  // one of eight warps has a ray: those of a window never fill the slots
+    Observer silent;
+    CHECK_THROWS_WITH(estimated(courtyard(), launches("1x1", 1), 2, silent, gpu.load({}), {{}}),
+                      Catch::Contains("began and ended at once") && Catch::Contains("--exact"));
 }
 
 TEST_CASE("an estimate of one block has means and no interval, so that none is certain enough") {

@@ -1,14 +1,18 @@
 #include "tools/jobs/windows/window_replay.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "tools/jobs/windows/scaled_findings.hpp"
 #include "tools/jobs/windows/work_count.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -83,7 +87,8 @@ class GpuWindows {
 public:
     GpuWindows(const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
                const WindowSizes& sizes, const WindowReplays& wanted)
-        : full_share_(sizes.unfilled_share),
+        : gpu_(gpu.name),
+          full_share_(sizes.unfilled_share),
           wave_(wave_warps(gpu)),
           counted_(cachesim::Replay(gpu, regions, sample), sizes.warm_up_waves * wave_, sizes.counted_waves * wave_,
                    wave_, sizes.windows) {
@@ -130,6 +135,11 @@ public:
             const auto& batches = timed.replay().batches();
             cachesim::TimedStatistics& times = result.times.emplace_back(batches.front());
             for (std::size_t b = 1; b < batches.size(); ++b) times += batches[b];
+            if (times.cycles == 0)
+                throw Error(fmt::format(
+                    "{}: a window in time began and ended at once, since most of its warps have no ray; expected a "
+                    "picture whose warps fill the GPU: raise --resolution, or replay whole launches (--exact)",
+                    gpu_));
         }
         if (explainer_) result.findings = explainer_->findings();
         return result;
@@ -146,6 +156,7 @@ private:
         before_ = now;
     }
 
+    std::string gpu_;
     double full_share_;
     std::uint32_t wave_;
     WindowedReplay<cachesim::Replay> counted_;
