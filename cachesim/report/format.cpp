@@ -45,4 +45,9 @@ std::string paragraph(const std::string& text, std::size_t indent) {
     return break_lines(printable_line(text), text_width, indent) + '\n';
 }
 
+std::string undefined_legend(const std::string& tables) {
+    const bool any = tables.find(" - ") != std::string::npos || tables.find(" -\n") != std::string::npos;
+    return any ? "-: undefined, since it would be divided by nothing.\n" : "";
+}
+
 }  // namespace raycache::cachesim

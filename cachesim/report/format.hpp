@@ -9,7 +9,7 @@
 
 namespace raycache::cachesim {
 
-/// "-" for what is no number.
+/// "-" for what is no number: a quotient of nothing.
 std::string decimals(double value, int digits);
 
 /// About four digits: "1334", "201.3", "20.13", "2.013", "0.201"; "0.2013" with small = 4.
@@ -35,5 +35,8 @@ std::string figure_cell(const Figure& figure, const std::optional<Estimate>& val
 
 /// A paragraph of lines of at most text_width columns, the second and later ones indented; ends in '\n'.
 std::string paragraph(const std::string& text, std::size_t indent = 0);
+
+/// A line that says what "-" means, if it is a cell of the tables in the text.
+std::string undefined_legend(const std::string& tables);
 
 }  // namespace raycache::cachesim

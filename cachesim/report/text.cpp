@@ -189,6 +189,7 @@ std::string to_text(const Report& report, std::size_t width) {
     std::string text = main_table(report, width);
     text += legend(report);
     text += factor_table(report, width);
+    text += undefined_legend(text);
     if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';
     for (const std::string& note : report.notes) text += paragraph("note: " + note, 2);

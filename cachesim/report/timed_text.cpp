@@ -143,6 +143,7 @@ std::string to_text(const TimedReport& report, std::size_t width) {
         text += figures_table(report, tables, width, which) + '\n';
     text += legend(report);
     if (!report.traffic.rows.empty()) text += factor_table(report.traffic, width);
+    text += undefined_legend(text);
     std::string verdicts;
     for (std::size_t i = 0; i < report.rows.size(); ++i)
         if (const auto found = verdict_of(report, i); found && !report.traffic.rows.empty())

@@ -126,6 +126,7 @@ TEST_CASE("one sample index gives no interval and says so once") {
     CHECK(r.notes == std::vector<std::string>{"one sample index: no confidence interval"});
     CHECK_FALSE(r.rows[0]["dram_bytes_per_ray"]->half_width);
     CHECK(to_text(r).find("±0") == std::string::npos);
+    CHECK(to_text(r).find("undefined") == std::string::npos);
 }
 
 TEST_CASE("the text report is a readable table, as wide as it needs to be or of 100 columns") {
@@ -213,7 +214,7 @@ TEST_CASE("a report of nothing still prints") {
     CHECK_FALSE(to_csv(make_report({empty}, "rotation", GroupBy::none)).empty());
     const Report zero = make_report(
         {series("a", {launch(0, {}), launch(1, {})}), series("b", {launch(0, {}), launch(1, {})})}, "a", GroupBy::none);
-    CHECK_THAT(to_text(zero), Catch::Contains("-"));
+    CHECK_THAT(to_text(zero), Catch::Contains("  - ") && Catch::Contains("-: undefined"));
     CHECK(to_text(zero).find("nan") == std::string::npos);
     CHECK(nlohmann::json::parse(to_json(zero))["rows"][1]["dram_bytes_ratio"]["mean"].is_null());
     CHECK(nlohmann::json::parse(to_json(zero))["rows"][1]["factors"].is_null());
