@@ -53,7 +53,8 @@ void OwnedLevel::report(const Lookups& answers, const AccessOrigin* window, Work
         const GroupNumbers::RayOf& of = groups_.ray_of(origin.group);
         work.served.push_back({rules_.ids.line(answers.lines[i], origin.region) * rules_.gpu.l1().line_bytes,
                                work.asked[i], answers.sectors[i] & work.asked[i], sm_, number_ == 0 ? origin.l1 : 0u,
-                               of.ray, of.bounce, rules_.kinds[origin.region], of.batch != not_counted, access});
+                               of.ray, of.bounce, rules_.kinds[origin.region], of.batch != not_counted, access,
+                               answers.lines[i]});
     }
     observers_.served(number_, sm_, work.served);
 }

@@ -27,6 +27,7 @@ struct ServedRequest {
     traces::ObjectKind kind = {};
     bool counted = true;       ///< whether it belongs to a batch of the replay's statistics
     std::uint32_t access = 0;  ///< on whose behalf: IssuedAccess::number
+    std::uint32_t line = 0;    ///< number of the line, without large gaps: that of the launch's LineIds
 };
 
 /// A warp access, before its look-ups.

@@ -87,11 +87,11 @@ TEST_CASE("a stack distance tells the hits of every fully associative cache that
 }
 
 TEST_CASE("stack distances agree with the shadow cache over many lines") {
-    constexpr std::uint64_t capacity = 700;
+    constexpr std::uint64_t capacity = 7000;
     StackDistance distances(4);
     ShadowCache shadow(capacity);
     bool equal = true;
-    for (const LookUp& l : random_lookups(60000, 5000, 1)) {
+    for (const LookUp& l : random_lookups(200000, 50000, 1)) {  // more than a block of RecencyOrder
         std::uint32_t absent = 0;
         distances.look_up(l.line, l.asked, [&](std::uint32_t distance, unsigned sector) {
             if (distance >= capacity) absent |= 1U << sector;

@@ -1,0 +1,92 @@
+// The miss-ratio surface of a level of caches: what it would have hit with LRU and any number of ways, for several
+// numbers of sets (or ways to find a set) at once, from one replay.
+//
+// What a level is asked does not depend on its own size, only on what is above it. So one replay with any ways tells
+// all: of each number of sets, StackDistance gives the hits of every associativity, cache by cache (each L1 of each SM
+// by itself), and the counts of all caches are added up. Equal, at every size, to a replay with caches of that size.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cachesim/analysis/stack_distance.hpp"
+#include "cachesim/cache/geometry.hpp"
+#include "cachesim/cache/line_map.hpp"
+#include "cachesim/replay/request_sink.hpp"
+
+namespace raycache::cachesim {
+
+/// Whether the level's way to find a set works for so many sets: "ipoly" and "parity" do only for some.
+bool index_fits(const CacheGeometry&, std::uint64_t sets);
+
+/// The same cache with so many sets in each slice, by its own index if that fits, else by xor_fold.
+CacheGeometry with_sets(CacheGeometry, std::uint64_t sets);
+
+/// One set of all its lines.
+CacheGeometry fully_associative(CacheGeometry);
+
+/// Of all caches of a level together, by number of ways.
+struct WaysCurve {
+    std::uint64_t asked = 0;            ///< sectors
+    std::uint64_t fills = 0;            ///< sectors fetched where nothing ever hits
+    std::vector<std::uint64_t> hits;    ///< sectors asked for and found, of 0, 1, 2 … ways; more ways find no more
+    std::vector<std::uint64_t> spared;  ///< of `fills`, those that are not fetched; empty: as `hits`
+
+    std::uint64_t hits_of(std::uint64_t ways) const { return at(hits, ways); }
+    /// Sectors fetched from below, those beside the missing ones (CacheGeometry::fill_bytes) included.
+    std::uint64_t fetched_of(std::uint64_t ways) const { return fills - at(spared.empty() ? hits : spared, ways); }
+    /// No number of ways has more hits than this one, and every smaller one has fewer.
+    std::uint64_t most_useful_ways() const { return hits.size() - 1; }
+
+private:
+    static std::uint64_t at(const std::vector<std::uint64_t>& values, std::uint64_t ways) {
+        return values[std::min<std::uint64_t>(ways, values.size() - 1)];
+    }
+};
+
+class LruSurface final : public RequestSink {
+public:
+    /// Listens to all caches of Gpu::levels[level]. `rows`: the geometries, whose ways are not asked; lines, sectors
+    /// and fill_bytes must be those of the level.
+    LruSurface(std::size_t level, std::span<const CacheGeometry> rows);
+
+    bool wants(std::size_t level, std::uint32_t /*sm*/) const override { return level == level_; }
+    void served(std::size_t level, std::span<const ServedRequest>) override;
+
+    /// Of each row, of all look-ups so far.
+    std::vector<WaysCurve> curves() const;
+    std::uint64_t look_ups() const { return look_ups_; }
+    /// Memory that it takes: about 30 bytes a row and 4 more for each line that a cache was ever asked for, and 4 for
+    /// each line of the scene.
+    std::size_t bytes() const;
+
+private:
+    struct Row {
+        LineMap map;
+        std::size_t sets;
+        std::uint32_t fill_sectors;
+        DistanceCounts asked, fetched;  ///< `fetched` only where a miss may fetch more than a sector
+    };
+    /// One cache of the level, with the lines numbered that it was asked for.
+    struct Cache {
+        std::vector<std::uint32_t> numbers;  ///< by line; 0: none yet, else 1 more
+        std::uint32_t count = 0;
+        std::vector<StackDistance> rows;
+    };
+    Cache& cache(const ServedRequest&);
+    void look_up(Row&, StackDistance&, std::uint32_t number, const ServedRequest&);
+
+    std::size_t level_;
+    std::uint32_t line_bytes_, sectors_;
+    std::vector<Row> rows_;
+    std::vector<std::vector<std::unique_ptr<Cache>>> caches_;  ///< by SM and number in it
+    std::uint64_t look_ups_ = 0;
+    std::vector<Cache*> of_;  ///< of each look-up of a call: its cache, and the line's number in that
+    std::vector<std::uint32_t> numbers_;
+};
+
+}  // namespace raycache::cachesim
