@@ -35,6 +35,7 @@ class JsonDocuments(ProgramTest):
             ["replay", base, *GPU, "--counters", "ncu"], ["compare", base, other, *GPU, "--gpu", "h100"],
             [*FUSED, "--strategy", wave, *GPU, "--by", "object"], [*FUSED, "--strategy", wave, "--gpu", "v100", "--timed"],
             [*FUSED, "--strategy", wave, *GPU, "--counters", "ncu"],
+            ["curve", base, other, *GPU, "--level", "l1"],
             ["explain", base, other, *GPU, "--by", "ray"], ["explain", base, other, "--gpu", "xeon-8380", "--by", "bounce"],
             ["quality", *QUALITY, *GPU, "--pairs", "--repeats", "2", "--strategy", "cranley-patterson,micro-jitter"],
             ["sweep", *QUALITY, *GPU, "--mu", "0.5,1"], ["samples"], ["samples", "--strategy", "coherent"],

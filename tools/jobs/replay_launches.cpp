@@ -22,15 +22,6 @@ double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Head
     return share / static_cast<double>(gpus.size());
 }
 
-/// What a series of this source and GPU is of.
-cachesim::Origin origin_of(const LaunchSource& source, const cachesim::Gpu& gpu) {
-    const traces::Provenance& p = source.header->provenance;
-    return {p.scene,      to_string(source.strategy),
-            p.sequence,   p.parameters,
-            p.thread_map, gpu.name,
-            p.spp,        {gpu.levels.size(), gpu.l1().sector_bytes}};
-}
-
 /// Makes a series of every source and GPU with replays that make_replay(gpu, regions, sample) makes.
 template <class Series, class MakeReplay>
 std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
@@ -109,6 +100,14 @@ struct BothSeries : cachesim::Series {
 };
 
 }  // namespace
+
+cachesim::Origin origin_of(const LaunchSource& source, const cachesim::Gpu& gpu) {
+    const traces::Provenance& p = source.header->provenance;
+    return {p.scene,      to_string(source.strategy),
+            p.sequence,   p.parameters,
+            p.thread_map, gpu.name,
+            p.spp,        {gpu.levels.size(), gpu.l1().sector_bytes}};
+}
 
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
                                      Observer& observer) {

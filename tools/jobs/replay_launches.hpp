@@ -13,6 +13,9 @@
 
 namespace raycache::tools {
 
+/// What a series of this source and GPU is of.
+cachesim::Origin origin_of(const LaunchSource&, const cachesim::Gpu&);
+
 /// One series per source and GPU, sources first. The stage of the observer is "replay". Throws Error as traces::Reader
 /// does.
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);

@@ -12,6 +12,7 @@ void add_verify(Program&);
 void add_replay(Program&);
 void add_compare(Program&);
 void add_explain(Program&);
+void add_curve(Program&);
 void add_quality(Program&);
 void add_sweep(Program&);
 void add_export(Program&);

@@ -134,6 +134,7 @@ Program::Program() {
     add_replay(*this);
     add_compare(*this);
     add_explain(*this);
+    add_curve(*this);
     add_quality(*this);
     add_sweep(*this);
     add_export(*this);

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "cachesim/report/curve_report.hpp"
+#include "cachesim/report/format.hpp"
+#include "traces/memory_budget.hpp"
+
+namespace raycache::cachesim {
+
+namespace {
+
+/// What tells a series from the others of the report.
+std::string series_name(const CurveReport& report, const CurveSeries& of) {
+    std::set<std::uint64_t> ns;
+    std::set<std::string> parameters;
+    std::set<std::string> sequences;
+    for (const CurveSeries& s : report.series) {
+        ns.insert(s.spp);
+        sequences.insert(s.sequence);
+        if (s.strategy == of.strategy) parameters.insert(s.parameters);
+    }
+    std::string name = of.strategy;
+    if (parameters.size() > 1) name += " " + of.parameters;
+    if (sequences.size() > 1) name += " " + of.sequence;
+    if (ns.size() > 1) name += fmt::format(" N={}", of.spp);
+    return name;
+}
+
+double hit_percent(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
+    return 100 * (1 - ratio_of_totals(level.misses(row, ways)).mean);
+}
+
+/// Of the GPU's own sets: hit rate and bytes of every strategy, by size.
+std::string own_table(const CurveReport& report, std::size_t l, std::size_t width) {
+    const LevelCurve& first = report.series.front().levels[l];
+    const CurveRow& own = first.rows.front();
+    TextTable table;
+    table.column("size", TextTable::Align::right);
+    table.column("ways", TextTable::Align::right, 1);
+    for (const CurveSeries& s : report.series)
+        table.column(fmt::format("{} {} %", series_name(report, s), level_name(first.level)), TextTable::Align::right);
+    for (const CurveSeries& s : report.series)
+        table.column(fmt::format("{} {} B/ray", series_name(report, s), traffic_name(first.level, s.caches.levels)),
+                     TextTable::Align::right);
+    for (const std::uint64_t size : table_sizes(report, l)) {
+        const std::uint64_t ways = size / own.way_bytes();
+        std::vector<std::string> cells{short_size(size) + (ways == own.geometry.ways ? " *" : "  "),
+                                       fmt::format("{}", ways)};
+        for (const CurveSeries& s : report.series)
+            cells.push_back(decimals(hit_percent(s.levels[l], s.levels[l].rows.front(), ways), 1));
+        for (const CurveSeries& s : report.series)
+            cells.push_back(with_interval(ratio_of_totals(s.levels[l].bytes_per_ray(s.levels[l].rows.front(), ways))));
+        table.row(std::move(cells));
+    }
+    return table.text(width);
+}
+
+/// Hit rates of all organisations.
+std::string surface_table(const CurveReport& report, std::size_t l, std::size_t width) {
+    const LevelCurve& first = report.series.front().levels[l];
+    TextTable table;
+    table.column("strategy", TextTable::Align::left);
+    table.column("size", TextTable::Align::right);
+    for (std::size_t r = 0; r < first.rows.size(); ++r)
+        table.column(fmt::format("{} {} %", row_name(first, r), level_name(first.level)), TextTable::Align::right,
+                     static_cast<unsigned>(r));
+    for (const CurveSeries& s : report.series)
+        for (const std::uint64_t size : table_sizes(report, l)) {
+            std::vector<std::string> cells{series_name(report, s), short_size(size)};
+            for (const CurveRow& row : s.levels[l].rows) {
+                const std::uint64_t ways = size / row.way_bytes();
+                const bool whole = ways > 0 && size % row.way_bytes() == 0;
+                cells.push_back(whole ? decimals(hit_percent(s.levels[l], row, ways), 1) : "-");
+            }
+            table.row(std::move(cells));
+        }
+    return table.text(width);
+}
+
+std::string bandwidth_text(const Equivalent& e, std::size_t levels) {
+    return fmt::format("with {} for both, {} needs {} times the {} bandwidth of {}", short_size(e.bytes.of), e.base,
+                       with_interval(e.bandwidth, 2), traffic_name(e.level, levels), e.other);
+}
+
+}  // namespace
+
+std::string to_text(const CurveReport& report, std::size_t width) {
+    const CurveSeries& first = report.series.front();
+    std::set<std::uint64_t> ns;
+    std::uint64_t memory = 0;
+    for (const CurveSeries& s : report.series) {
+        ns.insert(s.spp);
+        memory = std::max(memory, s.memory_bytes);
+    }
+    std::string text =
+        paragraph(fmt::format("{}, N {}, {}, {} sample ind{}", first.scene, fmt::join(ns, ", "), first.gpu,
+                              first.samples.size(), first.samples.size() == 1 ? "ex" : "ices"));
+    for (std::size_t l = 0; l < first.levels.size(); ++l) {
+        const LevelCurve& level = first.levels[l];
+        const CacheGeometry& own = level.rows.front().geometry;
+        text += '\n';
+        text += paragraph(fmt::format("{} with lru by size, {}{} set{} of {}-byte lines; * is the GPU's own",
+                                      level_name(level.level),
+                                      own.slices > 1 ? fmt::format("{} slices of ", own.slices) : "", own.sets,
+                                      own.sets == 1 ? "" : "s", own.line_bytes));
+        text += '\n' + own_table(report, l, width);
+        if (level.rows.size() > 1) text += '\n' + surface_table(report, l, width);
+    }
+    text += '\n';
+    for (const Equivalent& e : report.equivalents) {
+        text += paragraph(to_sentence(e) + "; " + bandwidth_text(e, first.caches.levels) + '.', 2);
+    }
+    text +=
+        paragraph(fmt::format("L1 %: hits of load requests, as Nsight Compute counts; below L1, hits of sectors asked "
+                              "for. B/ray: fetched by the level, launches beginning with cold caches. ±: 95 % "
+                              "confidence interval over sample indices. The curves of a launch took {}.",
+                              raycache::size_text(memory)));
+    for (const std::string& note : report.notes) text += paragraph("note: " + note, 2);
+    return text;
+}
+
+}  // namespace raycache::cachesim

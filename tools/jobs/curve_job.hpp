@@ -1,0 +1,34 @@
+// The job "curve": what caches of every size would have done, from one replay of each launch.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cachesim/report/curve_report.hpp"
+#include "tools/jobs/gpu_settings.hpp"
+#include "tools/jobs/launches.hpp"
+
+namespace raycache::tools {
+
+struct CurveJob {
+    LaunchSettings launches;           ///< of one kernel each
+    GpuSettings gpu;                   ///< one
+    std::vector<std::size_t> levels;   ///< 0: L1; none: all of the GPU
+    std::vector<std::uint64_t> sets;   ///< of a slice; beside the GPU's own and full associativity
+    std::vector<std::uint64_t> sizes;  ///< bytes of a cache, for the table; none: as table_sizes() says
+
+    /// Throws UsageError for a level that the GPU has not, for sizes with more levels than one and for one that is no
+    /// whole number of ways of the GPU's own sets, and as LaunchSettings::check() does.
+    void check(const cachesim::Gpu&) const;
+};
+
+struct CurveResult {
+    Subject subject;
+    std::vector<cachesim::CurveSeries> series;  ///< one per source
+};
+
+/// `gpu`: that of job.gpu. `outputs` as in replay_job.hpp. Throws as check(), Launches and refuse_wavefront() do. The
+/// result does not depend on the number of threads.
+CurveResult run(const CurveJob&, const cachesim::Gpu& gpu, Observer&, const FileNames& outputs = {});
+
+}  // namespace raycache::tools
