@@ -10,10 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/lru_surface.hpp"
+#include "cachesim/analysis/policy_caches.hpp"
 #include "cachesim/cache/geometry.hpp"
 
 namespace raycache::cachesim {
@@ -26,6 +28,15 @@ struct CurveRow {
     /// One more way, in bytes.
     std::uint64_t way_bytes() const { return geometry.slices * geometry.sets * geometry.line_bytes; }
     std::uint64_t most_useful_ways() const;
+    /// Of which the curve says anything: 1, or more where it is of a sample.
+    std::uint64_t least_ways() const { return launches.empty() ? 1 : launches.front().least_ways(); }
+};
+
+/// All caches of a level with the GPU's own sets, another policy, and some numbers of ways.
+struct PolicyRow {
+    std::string policy;                               ///< one of cache_policies(), or "belady": BeladyCaches
+    std::vector<std::uint64_t> ways;                  ///< ascending
+    std::vector<std::vector<PolicyCounts>> launches;  ///< one per sample index, each by `ways`
 };
 
 /// One level of one strategy.
@@ -33,10 +44,14 @@ struct LevelCurve {
     std::size_t level = 0;            ///< 0: L1
     std::vector<double> rays, asked;  ///< by launch; what hit rates are of: of L1 the requests of single loads
     std::vector<CurveRow> rows;       ///< the first is of the GPU's own sets
+    std::vector<PolicyRow> policies;  ///< beside lru; those asked for
     std::uint64_t look_ups = 0;
 
     Sums bytes_per_ray(const CurveRow&, std::uint64_t ways) const;  ///< fetched from below
     Sums misses(const CurveRow&, std::uint64_t ways) const;         ///< per request or sector asked for
+    /// The same of another policy, with so many ways as policies[].ways[at].
+    Sums bytes_per_ray(const PolicyRow&, std::size_t at) const;
+    Sums misses(const PolicyRow&, std::size_t at) const;
 };
 
 enum class DoesAsWell { bytes_per_ray, misses };

@@ -1,7 +1,11 @@
 #include "cachesim/analysis/lru_surface.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
+
+#include "traces/memory_budget.hpp"
 
 namespace raycache::cachesim {
 
@@ -25,10 +29,23 @@ CacheGeometry fully_associative(CacheGeometry geometry) {
     return geometry;
 }
 
-LruSurface::LruSurface(std::size_t level, std::span<const CacheGeometry> rows)
+namespace {
+
+/// Evenly spread over 0 to 1: SplitMix64 (Steele, Lea, Flood 2014).
+double spread(std::uint64_t line) {
+    std::uint64_t z = line + 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+}  // namespace
+
+LruSurface::LruSurface(std::size_t level, std::span<const CacheGeometry> rows, double rate)
     : level_(level),
       line_bytes_(rows.front().line_bytes),
-      sectors_(rows.front().line_bytes / rows.front().sector_bytes) {
+      sectors_(rows.front().line_bytes / rows.front().sector_bytes),
+      rate_(rate) {
     for (const CacheGeometry& row : rows)
         rows_.push_back({LineMap(row),
                          static_cast<std::size_t>(row.slices * row.sets),
@@ -77,6 +94,16 @@ void LruSurface::look_up(Row& row, StackDistance& distances, std::uint32_t numbe
 
 void LruSurface::served(std::size_t /*level*/, std::span<const ServedRequest> requests) {
     look_ups_ += requests.size();
+    if (rate_ >= 1) return follow(requests);
+    sample_.clear();
+    for (const ServedRequest& request : requests) {
+        asked_ += static_cast<unsigned>(std::popcount(request.asked));
+        if (spread(request.address / line_bytes_) < rate_) sample_.push_back(request);
+    }
+    follow(sample_);
+}
+
+void LruSurface::follow(std::span<const ServedRequest> requests) {
     of_.resize(requests.size());
     numbers_.resize(requests.size());
     for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -84,9 +111,16 @@ void LruSurface::served(std::size_t /*level*/, std::span<const ServedRequest> re
         Cache& cache = this->cache(request);
         if (request.line >= cache.numbers.size()) cache.numbers.resize(request.line + 1 + request.line / 4);
         std::uint32_t& number = cache.numbers[request.line];
-        if (number == 0) number = ++cache.count;
+        if (number == 0) {
+            number = ++cache.count;
+            ++lines_;
+        }
         of_[i] = &cache;
         numbers_[i] = number - 1;
+    }
+    if (lines_ >= next_check_) {
+        check_memory();
+        next_check_ = lines_ + lines_between_checks;
     }
     constexpr std::size_t ahead = 16;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -102,13 +136,23 @@ std::vector<WaysCurve> LruSurface::curves() const {
     std::vector<WaysCurve> all;
     for (const Row& row : rows_) {
         WaysCurve& curve = all.emplace_back();
-        curve.asked = curve.fills = row.asked.asked();
+        curve.followed = curve.fills = row.asked.asked();
+        curve.asked = rate_ < 1 ? asked_ : curve.followed;
+        curve.rate = rate_;
         curve.hits = row.asked.hits_by_ways();
         if (row.fill_sectors == 1) continue;
         curve.fills = row.fetched.asked();
         curve.spared = row.fetched.hits_by_ways();
     }
     return all;
+}
+
+void LruSurface::check_memory() const {
+    if (const std::uint64_t found = bytes(), limit = memory_limit(); found > limit)
+        throw MemoryError(
+            fmt::format("curve: expected curves of one launch in at most {}, found {} so far; ask for fewer numbers of "
+                        "sets, for one level, a sample (--sampled), a smaller picture, or raise --memory-limit",
+                        size_text(limit), size_text(found)));
 }
 
 std::size_t LruSurface::bytes() const {

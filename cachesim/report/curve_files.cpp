@@ -17,8 +17,10 @@ const char* index_name(const CacheGeometry& geometry) {
     return "";
 }
 
-Estimate hit_rate(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
-    Estimate misses = ratio_of_totals(level.misses(row, ways));
+/// `row` of ways, or of a policy.
+template <class Row>
+Estimate hit_rate(const LevelCurve& level, const Row& row, std::uint64_t at) {
+    Estimate misses = ratio_of_totals(level.misses(row, at));
     misses.mean = 1 - misses.mean;
     return misses;
 }
@@ -41,7 +43,7 @@ Json point_json(const LevelCurve& level, const CurveRow& row, std::uint64_t ways
 template <class Use>
 void for_each_size(const CurveReport& report, std::size_t level, const CurveRow& row, const Use& use) {
     for (const std::uint64_t size : table_sizes(report, level))
-        if (size >= row.way_bytes() && size % row.way_bytes() == 0) use(size / row.way_bytes());
+        if (size >= row.least_ways() * row.way_bytes() && size % row.way_bytes() == 0) use(size / row.way_bytes());
 }
 
 Json row_json(const CurveReport& report, std::size_t l, const LevelCurve& level, std::size_t r) {
@@ -55,6 +57,20 @@ Json row_json(const CurveReport& report, std::size_t l, const LevelCurve& level,
     return {{"name", row_name(level, r)},  {"slices", g.slices},           {"sets", g.sets},
             {"index", index_name(g)},      {"way_bytes", row.way_bytes()}, {"asked_sectors", asked},
             {"points", std::move(points)}, {"curve", std::move(curve)}};
+}
+
+Json policies_json(const LevelCurve& level) {
+    Json policies = Json::array();
+    for (const PolicyRow& row : level.policies) {
+        Json points = Json::array();
+        for (std::size_t at = 0; at < row.ways.size(); ++at)
+            points.push_back({{"bytes", row.ways[at] * level.rows.front().way_bytes()},
+                              {"ways", row.ways[at]},
+                              {"hit_rate", json_of(hit_rate(level, row, at))},
+                              {"bytes_per_ray", json_of(ratio_of_totals(level.bytes_per_ray(row, at)))}});
+        policies.push_back({{"policy", row.policy}, {"points", std::move(points)}});
+    }
+    return policies;
 }
 
 Json size_json(const EquivalentSize& e) {
@@ -82,7 +98,8 @@ std::string to_json(const CurveReport& report) {
                               {"own_bytes", own.geometry.ways * own.way_bytes()},
                               {"line_bytes", own.geometry.line_bytes},
                               {"look_ups", level.look_ups},
-                              {"organisations", std::move(rows)}});
+                              {"organisations", std::move(rows)},
+                              {"policies", policies_json(level)}});
         }
         json.update({{"spp", s.spp}, {"samples", s.samples}, {"memory_bytes", s.memory_bytes}, {"levels", levels}});
         series.push_back(std::move(json));
@@ -104,34 +121,45 @@ std::string to_json(const CurveReport& report) {
 
 std::string to_csv(const CurveReport& report) {
     CsvLine header;
-    for (const char* title : {"scene", "strategy", "sequence", "parameters", "thread_map", "gpu", "spp", "samples",
-                              "level", "organisation", "slices", "sets", "index", "ways", "bytes", "hit_rate",
-                              "hit_rate_ci95", "bytes_per_ray", "bytes_per_ray_ci95"})
+    for (const char* title : {"scene",  "strategy", "sequence",      "parameters",    "thread_map",
+                              "gpu",    "spp",      "samples",       "level",         "organisation",
+                              "slices", "sets",     "index",         "policy",        "ways",
+                              "bytes",  "hit_rate", "hit_rate_ci95", "bytes_per_ray", "bytes_per_ray_ci95"})
         header.text(title);
     std::string csv = header.end();
     for (const CurveSeries& s : report.series)
-        for (std::size_t l = 0; l < s.levels.size(); ++l)
-            for (std::size_t r = 0; r < s.levels[l].rows.size(); ++r) {
-                const LevelCurve& level = s.levels[l];
+        for (std::size_t l = 0; l < s.levels.size(); ++l) {
+            const LevelCurve& level = s.levels[l];
+            const auto add = [&](std::size_t r, const std::string& policy, std::uint64_t ways, const Estimate& hits,
+                                 const Estimate& bytes) {
                 const CurveRow& row = level.rows[r];
-                for_each_size(report, l, row, [&](std::uint64_t ways) {
-                    CsvLine line;
-                    for (const auto* name : {&s.scene, &s.strategy, &s.sequence, &s.parameters, &s.thread_map, &s.gpu})
-                        line.text(*name);
-                    line.number(s.spp);
-                    line.text(fmt::format("{}", fmt::join(s.samples, " ")));
-                    line.text(level_name(level.level));
-                    line.text(row_name(level, r));
-                    line.number(std::uint64_t{row.geometry.slices});
-                    line.number(row.geometry.sets);
-                    line.text(index_name(row.geometry));
-                    line.number(ways);
-                    line.number(ways * row.way_bytes());
-                    line.estimate(hit_rate(level, row, ways));
-                    line.estimate(ratio_of_totals(level.bytes_per_ray(row, ways)));
-                    csv += line.end();
+                CsvLine line;
+                for (const auto* name : {&s.scene, &s.strategy, &s.sequence, &s.parameters, &s.thread_map, &s.gpu})
+                    line.text(*name);
+                line.number(s.spp);
+                line.text(fmt::format("{}", fmt::join(s.samples, " ")));
+                line.text(level_name(level.level));
+                line.text(row_name(level, r));
+                line.number(std::uint64_t{row.geometry.slices});
+                line.number(row.geometry.sets);
+                line.text(index_name(row.geometry));
+                line.text(policy);
+                line.number(ways);
+                line.number(ways * row.way_bytes());
+                line.estimate(hits);
+                line.estimate(bytes);
+                csv += line.end();
+            };
+            for (std::size_t r = 0; r < level.rows.size(); ++r)
+                for_each_size(report, l, level.rows[r], [&](std::uint64_t ways) {
+                    add(r, "lru", ways, hit_rate(level, level.rows[r], ways),
+                        ratio_of_totals(level.bytes_per_ray(level.rows[r], ways)));
                 });
-            }
+            for (const PolicyRow& row : level.policies)
+                for (std::size_t at = 0; at < row.ways.size(); ++at)
+                    add(0, row.policy, row.ways[at], hit_rate(level, row, at),
+                        ratio_of_totals(level.bytes_per_ray(row, at)));
+        }
     return csv;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cachesim/gpus/choice.hpp"
+#include "cachesim/report/format.hpp"
 
 namespace raycache::cachesim {
 
@@ -27,7 +28,7 @@ void find_equivalents(CurveReport& report) {
         }
         for (std::size_t l = 0; l < other.levels.size(); ++l) {
             const LevelCurve &b = base->levels[l], &o = other.levels[l];
-            report.equivalents.push_back({base->strategy, other.strategy, o.level,
+            report.equivalents.push_back({base->strategy, other.strategy, o.level, other.caches.levels,
                                           equivalent_size(b, o, DoesAsWell::bytes_per_ray),
                                           equivalent_size(b, o, DoesAsWell::misses), equivalent_bandwidth(b, o)});
         }
@@ -59,6 +60,11 @@ CurveReport make_curve_report(std::vector<CurveSeries> series, const std::string
     find_equivalents(report);
     if (std::any_of(report.series.begin(), report.series.end(), [](const auto& s) { return s.samples.size() == 1; }))
         report.notes.emplace_back("one sample index: no confidence interval; raise --trace-samples");
+    if (const double rate = report.series.front().levels.front().rows.front().launches.front().rate; rate < 1)
+        report.notes.push_back(
+            fmt::format("estimates from {:.3g} % of all lines (SHARDS), fully associative; ± knows of "
+                        "sample indices alone",
+                        100 * rate));
     for (const LevelCurve& level : report.series.front().levels)
         if (const std::string& policy = level.rows.front().geometry.policy; policy != "lru")
             report.notes.push_back(fmt::format("curves are of lru; {} of {} evicts by {}", level_name(level.level),
@@ -74,6 +80,7 @@ std::vector<std::uint64_t> table_sizes(const CurveReport& report, std::size_t le
     std::vector<std::uint64_t> ways{own.geometry.ways};
     for (unsigned halves = 0; halves < 4 && ways.front() % 2 == 0; ++halves)
         ways.insert(ways.begin(), ways.front() / 2);
+    while (ways.size() > 1 && ways.front() < own.least_ways()) ways.erase(ways.begin());
     while (ways.back() < most && ways.back() < own.geometry.ways << 20) ways.push_back(2 * ways.back());
     for (std::uint64_t& w : ways) w *= own.way_bytes();
     return ways;
@@ -82,8 +89,9 @@ std::vector<std::uint64_t> table_sizes(const CurveReport& report, std::size_t le
 std::vector<std::uint64_t> drawn_ways(const CurveRow& row) {
     const std::uint64_t most = row.most_useful_ways();
     std::vector<std::uint64_t> ways;
+    const auto least = static_cast<double>(row.least_ways());
     for (unsigned eighth = 0;; ++eighth) {
-        const auto next = std::min(most, static_cast<std::uint64_t>(std::llround(std::exp2(eighth / 8.0))));
+        const auto next = std::min(most, static_cast<std::uint64_t>(std::llround(least * std::exp2(eighth / 8.0))));
         if (ways.empty() || ways.back() < next) ways.push_back(next);
         if (next == most) return ways;
     }
@@ -104,8 +112,8 @@ std::string traffic_name(std::size_t level, std::size_t levels) {
 
 std::string row_name(const LevelCurve& level, std::size_t row) {
     const CacheGeometry &own = level.rows.front().geometry, &g = level.rows[row].geometry;
-    if (row == 0) return "own sets";
     if (g.sets * g.slices == 1) return "fully associative";
+    if (row == 0) return "own sets";
     std::string name = fmt::format("{} set{}", g.sets, g.sets == 1 ? "" : "s");
     if (g.slices > 1) name += fmt::format(" in each of {} slices", g.slices);
     if (g.index == own.index) return name;
@@ -120,6 +128,8 @@ std::string to_sentence(const Equivalent& e) {
     text += e.bytes.size ? "with " + size_text_of(e.bytes) : "with no size: its first touches alone are more";
     text += "; it misses as seldom as ";
     text += e.misses.size ? "with " + size_text_of(e.misses) : "with none";
+    text += fmt::format("; with {} for both, {} needs {} times the {} bandwidth of {}", own, e.base,
+                        with_interval(e.bandwidth, 2), traffic_name(e.level, e.levels), e.other);
     return text;
 }
 

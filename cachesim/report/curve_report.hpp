@@ -23,6 +23,7 @@ struct CurveSeries : Origin {
 struct Equivalent {
     std::string base, other;
     std::size_t level = 0;         ///< 0: L1
+    std::size_t levels = 2;        ///< of the GPU
     EquivalentSize bytes, misses;  ///< as few bytes per ray; as few misses
     Estimate bandwidth;            ///< with the GPU's own cache for both
 };
@@ -45,7 +46,7 @@ std::vector<std::uint64_t> table_sizes(const CurveReport&, std::size_t level);
 /// About eight sizes an octave, from one way to the first that leaves nothing to gain: enough to draw a curve.
 std::vector<std::uint64_t> drawn_ways(const CurveRow&);
 
-/// "128 KiB micro-jitter = 600 KiB cranley-patterson in L2-to-L1 bytes (4.7x; 570 to 640 KiB): …"
+/// "L1: micro-jitter with 128 KiB fetches as few bytes per ray as cranley-patterson with 600 KiB (4.7x; …); …"
 std::string to_sentence(const Equivalent&);
 
 /// "600 KiB": about four digits

@@ -80,9 +80,27 @@ std::string surface_table(const CurveReport& report, std::size_t l, std::size_t 
     return table.text(width);
 }
 
-std::string bandwidth_text(const Equivalent& e, std::size_t levels) {
-    return fmt::format("with {} for both, {} needs {} times the {} bandwidth of {}", short_size(e.bytes.of), e.base,
-                       with_interval(e.bandwidth, 2), traffic_name(e.level, levels), e.other);
+/// Hit rates of all policies, with the GPU's own sets.
+std::string policy_table(const CurveReport& report, std::size_t l, std::size_t width) {
+    const LevelCurve& first = report.series.front().levels[l];
+    TextTable table;
+    table.column("strategy", TextTable::Align::left);
+    table.column("size", TextTable::Align::right);
+    table.column(fmt::format("lru {} %", level_name(first.level)), TextTable::Align::right);
+    for (const PolicyRow& row : first.policies)
+        table.column(fmt::format("{} {} %", row.policy, level_name(first.level)), TextTable::Align::right);
+    for (const CurveSeries& s : report.series) {
+        const LevelCurve& level = s.levels[l];
+        for (std::size_t at = 0; at < first.policies.front().ways.size(); ++at) {
+            const std::uint64_t ways = first.policies.front().ways[at];
+            std::vector<std::string> cells{series_name(report, s), short_size(ways * level.rows.front().way_bytes()),
+                                           decimals(hit_percent(level, level.rows.front(), ways), 1)};
+            for (const PolicyRow& row : level.policies)
+                cells.push_back(decimals(100 * (1 - ratio_of_totals(level.misses(row, at)).mean), 1));
+            table.row(std::move(cells));
+        }
+    }
+    return table.text(width);
 }
 
 }  // namespace
@@ -108,10 +126,11 @@ std::string to_text(const CurveReport& report, std::size_t width) {
                                       own.sets == 1 ? "" : "s", own.line_bytes));
         text += '\n' + own_table(report, l, width);
         if (level.rows.size() > 1) text += '\n' + surface_table(report, l, width);
+        if (!level.policies.empty()) text += '\n' + policy_table(report, l, width);
     }
     text += '\n';
     for (const Equivalent& e : report.equivalents) {
-        text += paragraph(to_sentence(e) + "; " + bandwidth_text(e, first.caches.levels) + '.', 2);
+        text += paragraph(to_sentence(e) + '.', 2);
     }
     text +=
         paragraph(fmt::format("L1 %: hits of load requests, as Nsight Compute counts; below L1, hits of sectors asked "

@@ -2,7 +2,9 @@
 #include "cachesim/analysis/lru_surface.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
+#include <random>
 #include <set>
 
 #include "cachesim/replay/replay.hpp"
@@ -10,6 +12,7 @@
 #include "oracle.hpp"
 #include "random_launch.hpp"
 #include "tests/real_data.hpp"
+#include "traces/memory_budget.hpp"
 
 using namespace raycache;
 using namespace raycache::cachesim;
@@ -180,6 +183,25 @@ TEST_CASE("surfaces of one look-up, of equal and of distinct look-ups") {
     CHECK(curve_of(cycle).fetched_of(1000) == 200);
 }
 
+TEST_CASE("a surface that takes more memory than an input may is refused in one line") {
+    const std::uint64_t before = memory_limit();
+    set_memory_limit(1 << 20);
+    const CacheGeometry geometry = small_gpu().l1();
+    LruSurface surface(0, std::span(&geometry, 1));
+    std::vector<ServedRequest> requests(200000);
+    for (std::uint32_t i = 0; i < requests.size(); ++i) {
+        requests[i].line = i;
+        requests[i].address = std::uint64_t{i} * geometry.line_bytes;
+        requests[i].asked = 1;
+    }
+    const auto ask = [&] {
+        surface.served(0, std::span(requests).first(100000));
+        surface.served(0, std::span(requests).subspan(100000));
+    };
+    CHECK_THROWS_WITH(ask(), Catch::Contains("at most 1 MiB") && Catch::Contains("--sampled"));
+    set_memory_limit(before);
+}
+
 TEST_CASE("a way to find a set that works for some numbers of sets gives way to xor_fold for others") {
     CacheGeometry cache;
     cache.sets = 32;
@@ -191,6 +213,40 @@ TEST_CASE("a way to find a set that works for some numbers of sets gives way to 
     CHECK(with_sets(cache, 4).index == SetIndex::parity);
     CHECK(with_sets(cache, 5).index == SetIndex::xor_fold);
     CHECK(with_sets(cache, 5).sets == 5);
+}
+
+TEST_CASE("a sampled curve is close to the exact one, and exact in what was asked") {
+    CacheGeometry geometry = fully_associative(small_gpu().l1());
+    geometry.fill_bytes = GENERATE(0u, 64u);
+    LruSurface exact(0, std::span(&geometry, 1)), sampled(0, std::span(&geometry, 1), 0.1);
+    std::mt19937 random(4);
+    std::vector<ServedRequest> requests(4000);
+    for (int call = 0; call < 150; ++call) {
+        for (ServedRequest& request : requests) {
+            const std::uint32_t range = 1u << (10 + random() % 7);  // some lines often, most hardly ever
+            request.line = static_cast<std::uint32_t>(random() % range);
+            request.address = std::uint64_t{request.line} * geometry.line_bytes;
+            request.asked = 1 + random() % 15;
+        }
+        exact.served(0, requests);
+        sampled.served(0, requests);
+    }
+    const WaysCurve a = exact.curves()[0], b = sampled.curves()[0];
+    CHECK(b.asked == a.asked);
+    CHECK(sampled.look_ups() == exact.look_ups());
+    CHECK(sampled.lines() < exact.lines() / 8);
+    CHECK(sampled.bytes() < exact.bytes() / 3);
+    CHECK(b.least_ways() == 2048);
+    double sum = 0, fetched = 0;
+    int sizes = 0;
+    for (std::uint64_t ways = b.least_ways(); ways < a.most_useful_ways(); ways += ways / 4, ++sizes) {
+        const auto asked = static_cast<double>(a.asked);
+        sum += std::abs(static_cast<double>(a.hits_of(ways)) - static_cast<double>(b.hits_of(ways))) / asked;
+        fetched += std::abs(static_cast<double>(a.fetched_of(ways)) - static_cast<double>(b.fetched_of(ways))) / asked;
+    }
+    REQUIRE(sizes > 10);
+    CHECK(sum / sizes < 0.03);  // where lines are alike and 6000 are followed, 0.014
+    CHECK(fetched / sizes < 0.04);
 }
 
 TEST_CASE("the surface of a real trace is what separate replays count", "[data]") {

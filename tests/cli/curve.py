@@ -15,12 +15,22 @@ class Curve(ProgramTest):
         self.path("tiny.toml").write_text(GPU_FILE)
         return ["--gpu", "tiny.toml"]
 
+    captured = {}
+
+    def trace(self, name):
+        """Captured once for all tests."""
+        path = self.path(f"{name}.rct")
+        if name in Curve.captured:
+            path.write_bytes(Curve.captured[name])
+        else:
+            Curve.captured[name] = self.capture(path.name, "--strategy", name).read_bytes()
+        return path
+
     def traces(self):
-        names = ("cranley-patterson", "coherent")
-        return [self.capture(f"{name}.rct", "--strategy", name) for name in names]
+        return [self.trace(name) for name in ("cranley-patterson", "coherent")]
 
     def test_every_size_is_what_a_replay_with_caches_of_that_size_counts(self):
-        trace, gpu = self.capture("coherent.rct", "--strategy", "coherent"), self.gpu()
+        trace, gpu = self.trace("coherent"), self.gpu()
         for level, below, asked, sets in (("l1", "l2_sectors", "l1_requests", 16), ("l2", "dram_sectors", "l2_sectors", 64)):
             found, = self.succeeds("curve", trace, *gpu, "--level", level, "--sets", "3", "--json").json["series"]
             own, full, three = found["levels"][0]["organisations"]
@@ -75,6 +85,49 @@ class Curve(ProgramTest):
         text = self.succeeds(*fused).text
         self.assertIn("8 KiB *", text)
         self.assertLessEqual(max(map(len, text.splitlines())), 100)
+
+    def test_other_policies_are_what_a_replay_with_them_counts_and_none_has_fewer_line_misses_than_the_optimum(self):
+        trace, gpu = self.trace("coherent"), self.gpu()
+        asked = ["curve", trace, *gpu, "--level", "l1", "--sizes", "8KiB,12KiB", "--policy", "random,belady,fifo"]
+        level = self.succeeds(*asked, "--json").json["series"][0]["levels"][0]
+        found = {row["policy"]: row["points"] for row in level["policies"]}
+        self.assertEqual([p["ways"] for p in found["fifo"]], [4, 6])
+        for policy in ("fifo", "random"):
+            row, = self.succeeds("replay", trace, *gpu, "--set", f"l1.policy={policy}", "--json").json["rows"]
+            self.assertEqual(found[policy][0]["bytes_per_ray"], row["l2_bytes_per_ray"])
+        lru = level["organisations"][0]["points"][0]
+        self.assertGreater(found["belady"][0]["hit_rate"]["mean"], lru["hit_rate"]["mean"])
+        self.assertIn("belady", self.succeeds(*asked).text)
+        self.assertEqual(self.succeeds(*asked, "--csv").text.count(",belady,"), 2)
+
+    def test_compare_and_explain_say_what_curve_says_where_asked(self):
+        traces, gpu = self.traces(), self.gpu()
+        sentence = self.succeeds("curve", *traces, *gpu, "--level", "l1", "--json").json["equivalents"][0]["sentence"]
+        compared = ["compare", *traces, *gpu, "--cache-equivalent"]
+        self.assertIn(sentence, self.succeeds(*compared, "--json").json["notes"])
+        self.assertIn(sentence, " ".join(self.succeeds(*compared).text.split()))
+        explained = ["explain", *traces, *gpu, "--cache-equivalent"]
+        self.assertEqual(self.succeeds(*explained, "--json").json["cache_equivalents"], [sentence])
+        self.assertIn(sentence, " ".join(self.succeeds(*explained).text.split()))
+        self.refuses(2, "compare", "--scene", *SCENE, "--gpu", "h100", "--cache-equivalent", mentions=["--exact"])
+
+    def test_a_sampled_curve_is_of_large_caches_alone(self):
+        sampled = [*FUSED, "--gpu", "rtx-3070", "--strategy", "coherent", "--sampled"]
+        exact, = self.succeeds(*sampled[:-1], "--level", "l2", "--json").json["series"][0]["levels"]
+        report = self.succeeds(*sampled, "0.3", "--level", "l2", "--json").json
+        found, = report["series"][0]["levels"]
+        organisation, = found["organisations"]
+        self.assertEqual(organisation["name"], "fully associative")
+        self.assertGreaterEqual(min(p["ways"] for p in organisation["curve"]), 2048)
+        truth = {p["bytes"]: p["hit_rate"]["mean"] for p in exact["organisations"][1]["points"]}
+        near = [abs(truth[p["bytes"]] - p["hit_rate"]["mean"]) for p in organisation["points"] if p["bytes"] in truth]
+        self.assertGreater(len(near), 1)
+        self.assertLess(max(near), 0.05)
+        self.assertIn("SHARDS", report["notes"][-1])
+        self.refuses(2, *sampled, "0.3", "--level", "l1", mentions=["L1", "2048"])
+        self.refuses(2, *sampled, "0.0001", "--level", "l2", mentions=["1024 lines", "exact"])
+        self.refuses(2, *sampled, "0.3", "--level", "l2", "--sizes", "64KiB", mentions=["2048 lines"])
+        self.refuses(2, *sampled, "0.3", "--level", "l2", "--sets", "4", mentions=["--sets"])
 
     def test_a_picture_shows_both_and_a_file_of_another_kind_is_refused(self):
         self.path("c.json").write_bytes(self.succeeds(*FUSED, *self.gpu(), "--strategy", "cranley-patterson,coherent", "--json").stdout)

@@ -1,11 +1,15 @@
 #include "tools/jobs/curve_job.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
+#include "cachesim/analysis/belady.hpp"
+#include "cachesim/cache/registry.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tools/jobs/replay_launches.hpp"
@@ -23,6 +27,11 @@ std::vector<std::size_t> levels_of(const CurveJob& job, const cachesim::Gpu& gpu
 
 /// The GPU's own sets first, then one set of all lines, then what was asked for.
 std::vector<cachesim::CacheGeometry> rows_of(const CurveJob& job, const cachesim::CacheGeometry& own) {
+    if (job.rate < 1) {
+        std::vector<cachesim::CacheGeometry> whole{cachesim::fully_associative(own)};
+        whole.front().ways = own.slices * own.sets * own.ways;
+        return whole;
+    }
     std::vector<cachesim::CacheGeometry> rows{own};
     if (own.sets * own.slices != 1) rows.push_back(cachesim::fully_associative(own));
     for (const std::uint64_t sets : job.sets)
@@ -30,11 +39,76 @@ std::vector<cachesim::CacheGeometry> rows_of(const CurveJob& job, const cachesim
     return rows;
 }
 
+/// Of the caches with other policies: `sizes`, or a few around the GPU's own.
+std::vector<std::uint64_t> ways_of_policies(const CurveJob& job, const cachesim::CacheGeometry& own) {
+    std::vector<std::uint64_t> ways;
+    for (const std::uint64_t size : job.sizes) ways.push_back(size / (own.slices * own.sets * own.line_bytes));
+    if (ways.empty())
+        for (const unsigned quarters : {1, 2, 4, 8, 16})
+            if (own.ways * quarters % 4 == 0) ways.push_back(own.ways * quarters / 4);
+    std::sort(ways.begin(), ways.end());
+    ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
+    return ways;
+}
+
+constexpr const char* optimum = "belady";
+constexpr std::uint64_t fewest_followed = 1024;  ///< lines of a sample
+
+/// What listens to one level of one launch.
+class LevelListeners {
+public:
+    LevelListeners(const CurveJob& job, const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
+                   std::size_t level, cachesim::Replay& replay)
+        : own_(gpu.levels[level]), ways_(ways_of_policies(job, own_)), surface_(level, rows_of(job, own_), job.rate) {
+        replay.observe(surface_);
+        std::vector<cachesim::CacheGeometry> geometries;
+        for (const std::string& policy : job.policies) {
+            if (policy == optimum) {
+                replay.observe(belady_.emplace(level));
+                continue;
+            }
+            for (const std::uint64_t ways : ways_) {
+                geometries.push_back(own_);
+                geometries.back().policy = policy;
+                geometries.back().ways = ways;
+            }
+        }
+        if (!geometries.empty()) replay.observe(others_.emplace(gpu, regions, level, geometries));
+    }
+
+    const cachesim::LruSurface& surface() const { return surface_; }
+
+    /// By policy, in the order of the job, and ways.
+    std::vector<std::vector<cachesim::PolicyCounts>> policies(const CurveJob& job) const {
+        std::vector<std::vector<cachesim::PolicyCounts>> all;
+        std::vector<cachesim::PolicyCounts> others;
+        if (others_) others = others_->counts();
+        std::size_t next = 0;
+        for (const std::string& policy : job.policies) {
+            auto& of_policy = all.emplace_back();
+            for (const std::uint64_t ways : ways_) {
+                cachesim::CacheGeometry geometry = own_;
+                geometry.ways = ways;
+                of_policy.push_back(policy == optimum ? belady_->counts(geometry) : others[next++]);
+            }
+        }
+        return all;
+    }
+
+private:
+    cachesim::CacheGeometry own_;
+    std::vector<std::uint64_t> ways_;
+    cachesim::LruSurface surface_;
+    std::optional<cachesim::PolicyCaches> others_;
+    std::optional<cachesim::BeladyCaches> belady_;
+};
+
 /// What one launch says of all levels.
 struct LaunchCurves {
     double rays = 0;
-    std::vector<std::vector<cachesim::WaysCurve>> curves;  ///< by level, by row
-    std::vector<double> asked;                             ///< by level
+    std::vector<std::vector<cachesim::WaysCurve>> curves;                    ///< by level, by row
+    std::vector<std::vector<std::vector<cachesim::PolicyCounts>>> policies;  ///< by level, policy, ways
+    std::vector<double> asked;                                               ///< by level
     std::vector<std::uint64_t> look_ups;
     std::uint64_t memory_bytes = 0;
 };
@@ -42,12 +116,11 @@ struct LaunchCurves {
 LaunchCurves curves_of(const LaunchSource& source, std::uint32_t launch, const CurveJob& job, const cachesim::Gpu& gpu,
                        const Stage& stage) {
     const traces::Header& header = *source.header;
-    std::vector<std::unique_ptr<cachesim::LruSurface>> surfaces;
+    std::vector<std::unique_ptr<LevelListeners>> listeners;
     cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
-    for (const std::size_t level : levels_of(job, gpu)) {
-        surfaces.push_back(std::make_unique<cachesim::LruSurface>(level, rows_of(job, gpu.levels[level])));
-        replay.observe(*surfaces.back());
-    }
+    const auto levels = levels_of(job, gpu);
+    for (const std::size_t level : levels)
+        listeners.push_back(std::make_unique<LevelListeners>(job, gpu, header.regions, level, replay));
     source.deliver(launch, [&](traces::WarpTrace&& warp) {
         const std::uint64_t rays = count_rays(warp);
         replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
@@ -56,29 +129,63 @@ LaunchCurves curves_of(const LaunchSource& source, std::uint32_t launch, const C
     const cachesim::Counters all = replay.finish().all();
     LaunchCurves result;
     result.rays = static_cast<double>(all.rays);
-    const auto levels = levels_of(job, gpu);
     for (std::size_t l = 0; l < levels.size(); ++l) {
-        result.curves.push_back(surfaces[l]->curves());
+        const cachesim::LruSurface& surface = listeners[l]->surface();
+        if (job.rate < 1 && surface.lines() < fewest_followed)
+            throw UsageError(
+                fmt::format("--sampled {}: expected a sample of at least {} lines, found {} in launch {}; "
+                            "raise it, or leave it out: the exact curve of so few lines is quick",
+                            job.rate, fewest_followed, surface.lines(), launch));
+        result.curves.push_back(surface.curves());
+        result.policies.push_back(listeners[l]->policies(job));
         result.asked.push_back(static_cast<double>(levels[l] == 0 ? all.requests : all.levels[levels[l]].sectors));
-        result.look_ups.push_back(surfaces[l]->look_ups());
-        result.memory_bytes += surfaces[l]->bytes();
+        result.look_ups.push_back(surface.look_ups());
+        result.memory_bytes += surface.bytes();
     }
     return result;
 }
 
 }  // namespace
 
+std::vector<std::string> CurveJob::policy_names() {
+    std::vector<std::string> names = cachesim::cache_policies();
+    names.insert(names.begin(), optimum);
+    return names;
+}
+
 void CurveJob::check(const cachesim::Gpu& loaded) const {
     launches.check();
+    const auto names = policy_names();
+    for (const std::string& policy : policies)
+        if (std::find(names.begin(), names.end(), policy) == names.end())
+            throw UsageError(fmt::format("policy '{}'; expected one of: {}", policy, fmt::join(names, ", ")));
     for (const std::size_t level : levels)
         if (level >= loaded.levels.size())
             throw UsageError(fmt::format("level l{}; expected l1 to l{}, the levels of {}", level + 1,
                                          loaded.levels.size(), loaded.name));
+    if (rate <= 0 || rate > 1) throw UsageError(fmt::format("rate {}; expected above 0, at most 1", rate));
+    if (rate < 1) {
+        if (!sets.empty() || !policies.empty())
+            throw UsageError("sets or policies beside a sampled curve; expected neither: it is of full associativity");
+        for (std::size_t l = 0; l < loaded.levels.size(); ++l) {
+            const cachesim::CacheGeometry& own = loaded.levels[l];
+            const std::uint64_t lines = own.slices * own.sets * own.ways;
+            if (!levels.empty() && levels.front() != l) continue;
+            if (lines < cachesim::WaysCurve::fewest_sampled_lines)
+                throw UsageError(fmt::format(
+                    "--sampled for {} of {}, of {} lines; expected a level of at least {}: "
+                    "samples say nothing of smaller caches",
+                    cachesim::level_name(l), loaded.name, lines, cachesim::WaysCurve::fewest_sampled_lines));
+        }
+    }
     if (sizes.empty()) return;
     if (levels.size() != 1) throw UsageError("sizes of all levels; expected those of one, such as --level l1");
     const cachesim::CacheGeometry& own = loaded.levels[levels.front()];
-    const std::uint64_t way = own.slices * own.sets * own.line_bytes;
+    const std::uint64_t way = rate < 1 ? own.line_bytes : own.slices * own.sets * own.line_bytes;
     for (const std::uint64_t size : sizes) {
+        if (rate < 1 && size / way < cachesim::WaysCurve::fewest_sampled_lines)
+            throw UsageError(fmt::format("--sizes {} bytes: expected at least {} lines beside --sampled", size,
+                                         cachesim::WaysCurve::fewest_sampled_lines));
         if (size % way == 0) continue;
         const std::uint64_t below = size / way * way;
         throw UsageError(fmt::format(
@@ -130,12 +237,16 @@ CurveResult run(const CurveJob& job, const cachesim::Gpu& gpu, Observer& observe
             level.level = levels[l];
             for (const cachesim::CacheGeometry& row : rows_of(job, gpu.levels[levels[l]]))
                 level.rows.push_back({row, {}});
+            for (const std::string& policy : job.policies)
+                level.policies.push_back({policy, ways_of_policies(job, gpu.levels[levels[l]]), {}});
             for (LaunchCurves& launch : found[s]) {
                 level.rays.push_back(launch.rays);
                 level.asked.push_back(launch.asked[l]);
                 level.look_ups += launch.look_ups[l];
                 for (std::size_t r = 0; r < level.rows.size(); ++r)
                     level.rows[r].launches.push_back(std::move(launch.curves[l][r]));
+                for (std::size_t i = 0; i < level.policies.size(); ++i)
+                    level.policies[i].launches.push_back(std::move(launch.policies[l][i]));
             }
         }
         for (const LaunchCurves& launch : found[s])

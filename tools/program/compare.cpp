@@ -7,6 +7,7 @@
 #include "tools/jobs/replay_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/equivalent_option.hpp"
 #include "tools/program/estimate_options.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/inputs.hpp"
@@ -29,6 +30,7 @@ struct CompareArguments {
     EstimateOptions estimate;
     ReportOptions report;
     ThreadOptions threads;
+    bool equivalent = false;
 };
 
 /// One for each sequence, N, strategy, K and layout; a strategy without K once, one that names a layout in that alone.
@@ -68,6 +70,7 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
     std::string why_exact;
     job.estimate = o->estimate.settings(*command, job.launches, why_exact);
     job.estimate.baseline = o->report.baseline;
+    if (o->equivalent) check_whole_launches(job.estimate);
     return [o, command, job, gpus, why_exact] {
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
@@ -78,7 +81,9 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
         if (!why_exact.empty()) warn(why_exact);
         const auto limit = o->threads.apply();
         Progress progress("compare");
-        o->report.publish(run(job, gpus, progress, outputs));
+        std::vector<std::string> remarks;
+        if (o->equivalent) remarks = cache_equivalents(job.launches, gpus, o->report.baseline, progress);
+        o->report.publish(run(job, gpus, progress, outputs), remarks);
     };
 }
 
@@ -94,6 +99,7 @@ void add_compare(Program& program) {
     add_spps(*command, o->spp, "sizes N of the sample set, separated by commas");
     o->threads.add(*command);
     o->report.add(*command, true);
+    add_cache_equivalent(*command, o->equivalent);
     o->estimate.add(*command, "with --timed: of every speed-up");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

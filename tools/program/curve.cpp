@@ -28,10 +28,11 @@ struct CurveArguments {
     GpuOptions gpu;
     std::string level = "all";
     std::vector<std::uint64_t> sets;
-    std::vector<std::string> sizes;
+    std::vector<std::string> sizes, policies;
     JsonOption json;
     WidthOption width;
     bool csv = false;
+    double rate = 1;
     ThreadOptions threads;
 };
 
@@ -52,6 +53,8 @@ Action plan(const std::shared_ptr<CurveArguments>& o, const Command* command) {
     CurveJob job;
     job.gpu = o->gpu;
     job.sets = o->sets;
+    job.policies = o->policies;
+    job.rate = o->rate;
     for (const std::string& size : o->sizes) job.sizes.push_back(read_size(size, "--sizes"));
     if (o->level != "all") job.levels = {static_cast<std::size_t>(o->level[1] - '1')};
     job.launches.traces = inputs.traces;
@@ -60,7 +63,8 @@ Action plan(const std::shared_ptr<CurveArguments>& o, const Command* command) {
         job.launches.sampling = o->sampling;
         for (const std::uint64_t spp : o->spp)
             for (const std::string& strategy : o->strategies)
-                job.launches.cases.push_back({tracer::parse_strategy_name(strategy, curve_parts), o->sequence, spp, {}, {}});
+                job.launches.cases.push_back(
+                    {tracer::parse_strategy_name(strategy, curve_parts), o->sequence, spp, {}, {}});
     }
     const cachesim::Gpu gpu = o->gpu.load_one({}, "curve");
     job.check(gpu);
@@ -107,6 +111,18 @@ void add_curve(Program& program) {
                      "also with so many sets (of each slice), beside the GPU's own and full associativity")
         ->range(std::uint64_t{1}, std::uint64_t{1} << 20);
     command
+        ->add_option("--policy", o->policies,
+                     "beside lru, with the GPU's own sets at --sizes or a quarter to four times the own size; belady: "
+                     "the optimum, which knows the future")
+        ->choices("policy", CurveJob::policy_names());
+    command
+        ->add_option("--sampled", o->rate,
+                     "estimates from this share of all lines, such as 0.05, for large caches (SHARDS): of full "
+                     "associativity, and of at least 2048 lines")
+        ->range(1e-6, 1.0)
+        ->default_text("1: exact")
+        ->excludes({"--sets", "--policy"});
+    command
         ->add_option("--baseline", o->baseline,
                      "strategy whose equivalent sizes are found; default: cranley-patterson where it is among them")
         ->check(strategy_name_check());
@@ -121,6 +137,7 @@ void add_curve(Program& program) {
     command->examples(
         {"raycache curve courtyard --strategy cranley-patterson,micro-jitter --spp 256 --k 1 --gpu rtx-3070",
          "raycache curve cp.rct mj.rct --gpu rtx-3070 --level l1 --sizes 64KiB,96KiB,128KiB --csv",
+         "raycache curve cp.rct --gpu rtx-3070 --level l1 --policy fifo,random,belady",
          "raycache curve mj.rct --gpu h100 --level l2 --l1-kib 128 --json",
          "raycache curve courtyard --gpu gtx-980-ti --level l1 --sets 1,16,64"});
     command->plan([o, command] { return plan(o, command); });

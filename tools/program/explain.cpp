@@ -1,9 +1,11 @@
 // raycache explain: why one trace is kinder to a GPU's caches than another.
 #include <fmt/format.h>
 
+#include "cachesim/report/format.hpp"
 #include "tools/jobs/explain_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/equivalent_option.hpp"
 #include "tools/program/estimate_options.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/idle_options.hpp"
@@ -30,7 +32,7 @@ struct ExplainArguments {
     std::string by = "none", heat_map;
     JsonOption json;
     WidthOption width;
-    bool counts_only = false;
+    bool counts_only = false, equivalent = false;
     EstimateOptions estimate;
     ThreadOptions threads;
 };
@@ -39,11 +41,22 @@ std::string samples_text(std::size_t count) {
     return count == 1 ? "1 sample index" : fmt::format("{} sample indices", count);
 }
 
-void publish(const ExplainArguments& o, const ExplainResult& result) {
+/// With what was found of cache sizes, where that was asked for.
+std::string explanation_document(const cachesim::Explanation& e, const std::vector<std::string>& remarks) {
+    if (remarks.empty()) return cachesim::to_json(e);
+    Json json = Json::parse(cachesim::to_json(e));
+    json["cache_equivalents"] = remarks;
+    return json_text(json);
+}
+
+void publish(const ExplainArguments& o, const ExplainResult& result, const std::vector<std::string>& remarks) {
     const cachesim::Explanation& e = result.explanation;
+    std::string said;
+    for (const std::string& remark : remarks) said += cachesim::paragraph(remark + '.', 2);
     Deliveries deliveries;
     deliveries.attempt([&] {
-        print(o.json ? o.json.document(cachesim::to_json(e), result.subject) : cachesim::to_text(e, o.width.columns()));
+        print(o.json ? o.json.document(explanation_document(e, remarks), result.subject)
+                     : cachesim::to_text(e, o.width.columns()) + said);
     });
     if (!result.maps.empty())
         write_heat_maps(
@@ -77,6 +90,7 @@ Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) 
     std::string why_exact;
     job.estimate = o->estimate.settings(*command, job.launches, why_exact);
     job.check();
+    if (o->equivalent) check_whole_launches(job.estimate);
     refuse_overwriting(inputs.traces, outputs);
     return [o, command, job, gpu, outputs, why_exact] {
         if (job.launches.of_traces())
@@ -88,7 +102,9 @@ Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) 
         if (job.pixels) tracer::check_drawing();
         const auto limit = o->threads.apply();
         Progress progress("explain");
-        publish(*o, run(job, gpu, progress, outputs));
+        std::vector<std::string> remarks;
+        if (o->equivalent) remarks = cache_equivalents(job.launches, {gpu}, std::nullopt, progress);
+        publish(*o, run(job, gpu, progress, outputs), remarks);
     };
 }
 
@@ -122,6 +138,7 @@ void add_explain(Program& program) {
         ->type_name("FILE.exr")
         ->excludes({"--windows", "--target-error", "--time-budget"});
     o->threads.add(*command);
+    add_cache_equivalent(*command, o->equivalent);
     o->estimate.add(*command, "of the predicted speed-up, with --counts-only of bytes");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

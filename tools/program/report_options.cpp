@@ -106,13 +106,14 @@ ReplayJob ReportOptions::job() const {
     return job;
 }
 
-void ReportOptions::publish(const ReplayResult& result) const {
-    if (timed)
-        return print_and_save(
-            cachesim::make_timed_report(result.times, baseline_of(result.times, baseline), result.series),
-            result.subject, *this);
-    const cachesim::Report report =
-        cachesim::make_report(result.series, baseline_of(result.series, baseline), parse_by(by));
+void ReportOptions::publish(const ReplayResult& result, const std::vector<std::string>& remarks) const {
+    if (timed) {
+        auto report = cachesim::make_timed_report(result.times, baseline_of(result.times, baseline), result.series);
+        report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
+        return print_and_save(report, result.subject, *this);
+    }
+    cachesim::Report report = cachesim::make_report(result.series, baseline_of(result.series, baseline), parse_by(by));
+    report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
     if (counters.empty())
         print_and_save(report, result.subject, *this);
     else

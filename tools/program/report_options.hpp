@@ -30,7 +30,8 @@ struct ReportOptions {
     /// What is asked of the GPUs; the launches are the command's.
     ReplayJob job() const;
     /// Makes the report of that job's result, prints it in the chosen format, and saves all formats where asked.
-    void publish(const ReplayResult&) const;
+    /// `remarks` come behind its notes.
+    void publish(const ReplayResult&, const std::vector<std::string>& remarks = {}) const;
 
 private:
     void check() const;
