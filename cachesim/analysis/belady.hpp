@@ -1,7 +1,7 @@
-// Belady's optimum: caches that evict, of a set, the line whose next look-up is the furthest away (Belady 1966, "A study
-// of replacement algorithms for a virtual-storage computer"; optimal: Mattson et al. 1970). No policy that takes in every
-// line asked for has fewer line misses. Sectors are fetched as ever, so that of sectors, which no known policy is optimal
-// for in reasonable time, the figure is that of the fewest line misses, not a proven bound.
+// Belady's optimum: caches that evict, of a set, the line whose next look-up is the furthest away (Belady 1966, "A
+// study of replacement algorithms for a virtual-storage computer"; optimal: Mattson et al. 1970). No policy that takes
+// in every line asked for has fewer line misses. Sectors are fetched as ever, so that of sectors, which no known policy
+// is optimal for in reasonable time, the figure is that of the fewest line misses, not a proven bound.
 //
 // The future must be known, so all look-ups are kept until the end: 8 bytes each, charged to the memory that an input
 // may take, and simulated then.

@@ -1,10 +1,11 @@
-// What a strategy would have asked of the memory below a level of caches, for every size of these caches, and which size
-// another strategy needs to do as well.
+// What a strategy would have asked of the memory below a level of caches, for every size of these caches, and which
+// size another strategy needs to do as well.
 //
 // The equivalent size of a cache of C bytes with strategy B, for strategy A: the smallest cache with which A fetches no
-// more bytes per ray than B does with C (or misses no more often). Its interval is that of a test turned round (Casella &
-// Berger, Statistical Inference, 2002, section 9.2.1): all sizes for which the ratio of the two, paired by sample index
-// (estimate.hpp), does not differ from 1 at 95 %. No size is guessed between those that exist: a cache has whole ways.
+// more bytes per ray than B does with C (or misses no more often). Its interval is that of a test turned round (Casella
+// & Berger, Statistical Inference, 2002, section 9.2.1): all sizes for which the ratio of the two, paired by sample
+// index (estimate.hpp), does not differ from 1 at 95 %. No size is guessed between those that exist: a cache has whole
+// ways.
 #pragma once
 
 #include <cstddef>

@@ -2,10 +2,10 @@
 // once (Mattson, Gecsei, Slutz, Traiger 1970, "Evaluation techniques for storage hierarchies"; of a cache with sets,
 // set by set: Hill & Smith 1989, "Evaluating associativity in CPU caches").
 //
-// The distance of a line is the number of other lines of its set looked up since it was last; a cache of W ways with LRU
-// holds it if that is less than W. Sectors are fetched one by one, or in aligned groups: one is there if its line has
-// never been evicted since it was fetched, so its distance is the largest of its line since it was last asked for. Exact
-// for any sequence of look-ups and, with one set, equal to ShadowCache of W lines.
+// The distance of a line is the number of other lines of its set looked up since it was last; a cache of W ways with
+// LRU holds it if that is less than W. Sectors are fetched one by one, or in aligned groups: one is there if its line
+// has never been evicted since it was fetched, so its distance is the largest of its line since it was last asked for.
+// Exact for any sequence of look-ups and, with one set, equal to ShadowCache of W lines.
 //
 // Memory, about 30 bytes a line and 4 a sector, grows with the highest line; bytes() says it.
 #pragma once

@@ -107,6 +107,7 @@ std::string to_json(const CurveReport& report) {
     for (const Equivalent& e : report.equivalents)
         equivalents.push_back({{"base", e.base},
                                {"other", e.other},
+                               {"spp", e.spp},
                                {"level", level_name(e.level)},
                                {"own_bytes", e.bytes.of},
                                {"by_bytes_per_ray", size_json(e.bytes)},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "cachesim/gpus/choice.hpp"
 #include "cachesim/report/format.hpp"
@@ -28,7 +29,8 @@ void find_equivalents(CurveReport& report) {
         }
         for (std::size_t l = 0; l < other.levels.size(); ++l) {
             const LevelCurve &b = base->levels[l], &o = other.levels[l];
-            report.equivalents.push_back({base->strategy, other.strategy, o.level, other.caches.levels,
+            report.equivalents.push_back({base->strategy, other.strategy, series_name(report, *base),
+                                          series_name(report, other), other.spp, o.level, other.caches.levels,
                                           equivalent_size(b, o, DoesAsWell::bytes_per_ray),
                                           equivalent_size(b, o, DoesAsWell::misses), equivalent_bandwidth(b, o)});
         }
@@ -43,7 +45,7 @@ std::string interval_text(const EquivalentSize& e) {
 }
 
 std::string size_text_of(const EquivalentSize& e) {
-    return fmt::format("{} ({:.2g}x{})", short_size(*e.size), e.times(), interval_text(e));
+    return fmt::format("{} ({:.3g}x{})", short_size(*e.size), e.times(), interval_text(e));
 }
 
 }  // namespace
@@ -122,14 +124,31 @@ std::string row_name(const LevelCurve& level, std::size_t row) {
     return name;
 }
 
+std::string series_name(const CurveReport& report, const CurveSeries& of) {
+    std::set<std::uint64_t> ns;
+    std::set<std::string> sequences;
+    std::size_t alike = 0;
+    for (const CurveSeries& s : report.series) {
+        ns.insert(s.spp);
+        sequences.insert(s.sequence);
+        alike += s.strategy == of.strategy && s.sequence == of.sequence && s.spp == of.spp;
+    }
+    std::string name = of.strategy;
+    if (alike > 1) name += " " + of.parameters;
+    if (sequences.size() > 1) name += " " + of.sequence;
+    if (ns.size() > 1) name += fmt::format(" N={}", of.spp);
+    return name;
+}
+
 std::string to_sentence(const Equivalent& e) {
     const std::string level = level_name(e.level), own = short_size(e.bytes.of);
-    std::string text = fmt::format("{}: {} with {} fetches as few bytes per ray as {} ", level, e.other, own, e.base);
+    std::string text =
+        fmt::format("{}: {} with {} fetches as few bytes per ray as {} ", level, e.other_name, own, e.base_name);
     text += e.bytes.size ? "with " + size_text_of(e.bytes) : "with no size: its first touches alone are more";
     text += "; it misses as seldom as ";
     text += e.misses.size ? "with " + size_text_of(e.misses) : "with none";
-    text += fmt::format("; with {} for both, {} needs {} times the {} bandwidth of {}", own, e.base,
-                        with_interval(e.bandwidth, 2), traffic_name(e.level, e.levels), e.other);
+    text += fmt::format("; with {} for both, {} needs {} times the {} bandwidth of {}", own, e.base_name,
+                        with_interval(e.bandwidth, 2), traffic_name(e.level, e.levels), e.other_name);
     return text;
 }
 

@@ -21,11 +21,13 @@ struct CurveSeries : Origin {
 
 /// What `base` needs to do as well as `other` with the GPU's own cache.
 struct Equivalent {
-    std::string base, other;
-    std::size_t level = 0;         ///< 0: L1
-    std::size_t levels = 2;        ///< of the GPU
-    EquivalentSize bytes, misses;  ///< as few bytes per ray; as few misses
-    Estimate bandwidth;            ///< with the GPU's own cache for both
+    std::string base, other;            ///< strategies
+    std::string base_name, other_name;  ///< in sentences: series_name()
+    std::uint64_t spp = 0;              ///< N
+    std::size_t level = 0;              ///< 0: L1
+    std::size_t levels = 2;             ///< of the GPU
+    EquivalentSize bytes, misses;       ///< as few bytes per ray; as few misses
+    Estimate bandwidth;                 ///< with the GPU's own cache for both
 };
 
 struct CurveReport {
@@ -36,8 +38,8 @@ struct CurveReport {
     std::vector<std::string> notes;
 };
 
-/// `sizes`: those of the table, each a whole number of ways of the GPU's own sets. Throws UsageError for a baseline that
-/// is no series.
+/// `sizes`: those of the table, each a whole number of ways of the GPU's own sets. Throws UsageError for a baseline
+/// that is no series.
 CurveReport make_curve_report(std::vector<CurveSeries>, const std::string& baseline, std::vector<std::uint64_t> sizes);
 
 /// The rows of a level's table: the sizes asked for, else own size times powers of two, up to the first that leaves
@@ -46,6 +48,8 @@ std::vector<std::uint64_t> table_sizes(const CurveReport&, std::size_t level);
 /// About eight sizes an octave, from one way to the first that leaves nothing to gain: enough to draw a curve.
 std::vector<std::uint64_t> drawn_ways(const CurveRow&);
 
+/// What tells a series from the others of the report: its strategy, and sequence, N or parameters where it must be.
+std::string series_name(const CurveReport&, const CurveSeries&);
 /// "L1: micro-jitter with 128 KiB fetches as few bytes per ray as cranley-patterson with 600 KiB (4.7x; …); …"
 std::string to_sentence(const Equivalent&);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "cachesim/report/curve_report.hpp"
 #include "cachesim/report/format.hpp"
@@ -12,29 +13,12 @@ namespace raycache::cachesim {
 
 namespace {
 
-/// What tells a series from the others of the report.
-std::string series_name(const CurveReport& report, const CurveSeries& of) {
-    std::set<std::uint64_t> ns;
-    std::set<std::string> parameters;
-    std::set<std::string> sequences;
-    for (const CurveSeries& s : report.series) {
-        ns.insert(s.spp);
-        sequences.insert(s.sequence);
-        if (s.strategy == of.strategy) parameters.insert(s.parameters);
-    }
-    std::string name = of.strategy;
-    if (parameters.size() > 1) name += " " + of.parameters;
-    if (sequences.size() > 1) name += " " + of.sequence;
-    if (ns.size() > 1) name += fmt::format(" N={}", of.spp);
-    return name;
-}
-
 double hit_percent(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
     return 100 * (1 - ratio_of_totals(level.misses(row, ways)).mean);
 }
 
-/// Of the GPU's own sets: hit rate and bytes of every strategy, by size.
-std::string own_table(const CurveReport& report, std::size_t l, std::size_t width) {
+/// Of the GPU's own sets: hit rate and bytes of every strategy, a row for each size.
+std::string wide_table(const CurveReport& report, std::size_t l, std::size_t width) {
     const LevelCurve& first = report.series.front().levels[l];
     const CurveRow& own = first.rows.front();
     TextTable table;
@@ -56,6 +40,35 @@ std::string own_table(const CurveReport& report, std::size_t l, std::size_t widt
         table.row(std::move(cells));
     }
     return table.text(width);
+}
+
+/// The same, a row for each strategy and size.
+std::string long_table(const CurveReport& report, std::size_t l, std::size_t width) {
+    const LevelCurve& first = report.series.front().levels[l];
+    const CurveRow& own = first.rows.front();
+    TextTable table;
+    table.column("strategy", TextTable::Align::left);
+    table.column("size", TextTable::Align::right);
+    table.column("ways", TextTable::Align::right, 1);
+    table.column(level_name(first.level) + " %", TextTable::Align::right);
+    table.column(traffic_name(first.level, report.series.front().caches.levels) + " B/ray", TextTable::Align::right);
+    for (const CurveSeries& s : report.series)
+        for (const std::uint64_t size : table_sizes(report, l)) {
+            const std::uint64_t ways = size / own.way_bytes();
+            const LevelCurve& level = s.levels[l];
+            table.row({series_name(report, s), short_size(size) + (ways == own.geometry.ways ? " *" : "  "),
+                       fmt::format("{}", ways), decimals(hit_percent(level, level.rows.front(), ways), 1),
+                       with_interval(ratio_of_totals(level.bytes_per_ray(level.rows.front(), ways)))});
+        }
+    return table.text(width);
+}
+
+std::string own_table(const CurveReport& report, std::size_t l, std::size_t width) {
+    std::string wide = wide_table(report, l, width);
+    std::istringstream lines(wide);
+    for (std::string line; std::getline(lines, line);)
+        if (width != any_width && columns_of(line) > width) return long_table(report, l, width);
+    return wide;
 }
 
 /// Hit rates of all organisations.

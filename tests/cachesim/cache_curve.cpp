@@ -70,7 +70,7 @@ TEST_CASE("where no size is enough an equivalent size says so, and one sample in
     CHECK(one.size == 6 * way);
     CHECK(!one.low);
     CHECK(!one.high);
-    const Equivalent all{"a", "b", 0, 2, none, one, {1.5, {}}};
+    const Equivalent all{"a", "b", "a", "b", 64, 0, 2, none, one, {1.5, {}}};
     CHECK(to_sentence(all).find("with no size") != std::string::npos);
     CHECK(to_sentence(all).find("with 1.5 KiB (1.5x)") != std::string::npos);
     CHECK(to_sentence(all).find("1.50 times the L2-to-L1 bandwidth of b") != std::string::npos);

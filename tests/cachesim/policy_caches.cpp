@@ -116,6 +116,6 @@ TEST_CASE("Belady's optimum keeps sectors as other policies do") {
         request.asked = sectors;
         belady.served(0, std::span(&request, 1));
     }
-    // Line 0: sectors 0, 1 at once, 1 hits, then 2, 3; line 1: all; line 2 takes the place of line 1, which comes later.
+    // Line 0: sectors 0, 1 at once, 1 hits, then 2, 3; line 1: all; line 2 takes the place of line 1.
     CHECK(belady.counts(geometry) == PolicyCounts{11, 3, 2 + 2 + 4 + 2 + 2});
 }

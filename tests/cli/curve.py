@@ -139,6 +139,13 @@ class Curve(ProgramTest):
         self.assertEqual((refused.returncode, len(refused.stderr.splitlines())), (1, 1))
         self.assertIn("raycache curve --json", refused.stderr)
 
+    def test_several_n_are_told_apart_within_100_columns(self):
+        text = self.succeeds(*FUSED[:-1], "64,256", *self.gpu(), "--level", "l1", "--strategy", "cranley-patterson,micro-jitter").text
+        self.assertLessEqual(max(map(len, text.splitlines())), 100)
+        words = " ".join(text.split())
+        for n in (64, 256):
+            self.assertIn(f"micro-jitter N={n} with 8 KiB fetches as few bytes per ray as cranley-patterson N={n} with", words)
+
     def test_what_makes_no_sense_is_refused_in_one_line(self):
         gpu = self.gpu()
         self.refuses(2, *FUSED, *gpu, "--level", "l1", "--sizes", "3000", mentions=["2 KiB", "4 KiB", "tiny"])

@@ -10,8 +10,8 @@
 
 namespace raycache::tools {
 
-/// Of L1, as to_sentence() has it; for several GPUs each begins with its name. Traces or reads the launches, whole ones,
-/// once more and throws as the job "curve" does. `baseline`: as baseline_of() takes it; none: the first of the
+/// Of L1, as to_sentence() has it; for several GPUs each begins with its name. Traces or reads the launches, whole
+/// ones, once more and throws as the job "curve" does. `baseline`: as baseline_of() takes it; none: the first of the
 /// launches.
 std::vector<std::string> cache_equivalents(const LaunchSettings&, const std::vector<cachesim::Gpu>&,
                                            const std::optional<std::string>& baseline, Observer&);
