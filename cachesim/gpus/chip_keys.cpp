@@ -24,6 +24,10 @@ std::span<const Key<Gpu>> chip_keys() {
          "lanes that execute together; a warp runs as 32 / `simd_width` vectors"},
         {"scheduler", choice<&Gpu::scheduler, schedulers>(), initial, "",
          "which resident warp issues next; makes a difference in time only"},
+        {"traversal", choice<&Gpu::traversal, traversals>(), initial, "",
+         "who walks the BVH: instructions of the SM, or its RT unit, which needs `[rt_unit]`; makes a difference in "
+         "time "
+         "only"},
     };
     return keys;
 }

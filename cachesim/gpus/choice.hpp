@@ -26,6 +26,7 @@ inline constexpr Choice<Scheduler> schedulers[] = {{"loose_round_robin", Schedul
                                                    {"greedy_then_oldest", Scheduler::greedy_then_oldest}};
 inline constexpr Choice<CrossbarQueues> crossbar_queues[] = {{"outputs", CrossbarQueues::outputs},
                                                              {"inputs", CrossbarQueues::inputs}};
+inline constexpr Choice<Traversal> traversals[] = {{"software", Traversal::software}, {"rt_unit", Traversal::rt_unit}};
 inline constexpr Choice<L1Port> l1_ports[] = {{"tags", L1Port::tags}, {"banks", L1Port::banks}};
 
 /// The name of a value, which must be one of the choices.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "cachesim/gpus/choice.hpp"
 #include "cachesim/gpus/gpu_file.hpp"
 #include "cachesim/gpus/gpu_name.hpp"
 #include "cachesim/gpus/presets.hpp"
@@ -82,6 +83,8 @@ std::string no_time_note(const Gpu& gpu) {
     return fmt::format("{}: not predicted for {} ({}; see cachesim/MODEL.md)", kind, gpu.name,
                        gpu.timing->not_predicted);
 }
+
+const char* traversal_name(const Gpu& gpu) { return name_of<Traversal>(traversals, gpu.traversal); }
 
 std::vector<GpuValue> gpu_values(const std::string& name_or_path) {
     const GpuText text = find_text(name_or_path);

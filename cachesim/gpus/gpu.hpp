@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cachesim/cache/geometry.hpp"
+#include "cachesim/gpus/rt_unit_timing.hpp"
 #include "cachesim/gpus/timing.hpp"
 
 namespace raycache::cachesim {
@@ -43,6 +44,9 @@ struct Gpu {
     /// (L1: l1_per_sm). Line and sector size are the same in all.
     std::vector<CacheGeometry> levels{2};
     std::optional<Timing> timing;  ///< what a timed replay needs
+    /// What walks the BVH there; rt_unit asks for an RT unit, which software leaves idle.
+    Traversal traversal = Traversal::software;
+    std::optional<RtUnitTiming> rt_unit;
 
     const CacheGeometry& l1() const { return levels.front(); }
     CacheGeometry& l1() { return levels.front(); }
@@ -57,6 +61,9 @@ Gpu load_gpu(const std::string& name_or_path, const std::vector<std::string>& ch
 /// "CPU time: not predicted for xeon-8380 (…; see cachesim/MODEL.md)" where Timing::not_predicted says why; else empty.
 /// Reports print it in place of times and what is computed from them, and leave those out: null in JSON, empty in CSV.
 std::string no_time_note(const Gpu&);
+
+/// "software" or "rt_unit", as a GPU file has it.
+const char* traversal_name(const Gpu&);
 
 /// Whether load_gpu() takes it for the path of a file.
 bool is_gpu_file(const std::string& name_or_path);

@@ -113,7 +113,8 @@ void read_chip(TomlReader& file, TomlReader::Section& root, Gpu& gpu) {
 
 Gpu read(TomlReader& file) {
     std::vector<std::string> known = names_of(chip_keys());
-    for (const char* section : {"registers", "front_end", "l1", "l2", "l3", "timing"}) known.emplace_back(section);
+    for (const char* section : {"registers", "front_end", "l1", "l2", "l3", "timing", "rt_unit"})
+        known.emplace_back(section);
     TomlReader::Section root = file.root(known);
     Gpu gpu;
     read_chip(file, root, gpu);
@@ -123,6 +124,7 @@ Gpu read(TomlReader& file) {
     for (std::size_t level = 1; level <= levels; ++level)
         gpu.levels.push_back(read_cache(file, root, fmt::format("l{}", level)));
     if (root.has("timing")) gpu.timing = read_section(root, "timing", timing_keys());
+    if (root.has("rt_unit")) gpu.rt_unit = read_section(root, "rt_unit", rt_unit_keys());
     if (const auto problem = find_problem(gpu)) file.fail_at(problem->key, problem->message);
     return gpu;
 }

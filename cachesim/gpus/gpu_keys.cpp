@@ -105,6 +105,7 @@ std::vector<GpuKey> gpu_keys() {
     append(all, "front_end", front_end_keys());
     append(all, "l1", level_keys());
     append(all, "timing", timing_keys());
+    append(all, "rt_unit", rt_unit_keys());
     return all;
 }
 

@@ -7,7 +7,7 @@
 namespace raycache::cachesim {
 
 struct GpuKey {
-    std::string section;        ///< "" for the chip, "registers", "front_end", "timing"; "l1" stands for l2 and l3, too
+    std::string section;        ///< "" for the chip, "timing", "rt_unit", …; "l1" stands for l2 and l3, too
     std::string name;           ///< "ways"
     bool needed = false;        ///< must be there if its section is
     std::string default_value;  ///< what holds without it: "32", "from `[registers]`"; empty if needed

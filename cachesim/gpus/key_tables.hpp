@@ -19,5 +19,6 @@ std::span<const Key<Registers>> register_keys();
 std::span<const Key<FrontEnd>> front_end_keys();
 std::span<const Key<CacheGeometry>> level_keys();  ///< [l1], [l2], [l3]
 std::span<const Key<Timing>> timing_keys();
+std::span<const Key<RtUnitTiming>> rt_unit_keys();
 
 }  // namespace raycache::cachesim

@@ -215,6 +215,22 @@ std::optional<GpuProblem> find_problem(const Timing& t, const Gpu& gpu) {
     return not_in("timing.l2_partitions", t.l2_partitions, 1, gpu.levels.back().slices);
 }
 
+/// What an RT unit asks of the other keys.
+std::optional<GpuProblem> find_traversal_problem(const Gpu& gpu) {
+    if (gpu.rt_unit)
+        if (auto p = find_value_problem(rt_unit_keys(), *gpu.rt_unit, "rt_unit.")) return p;
+    if (gpu.traversal == Traversal::software) return std::nullopt;
+    if (!gpu.rt_unit)
+        return GpuProblem{"traversal",
+                          "expected a table [rt_unit] for \"rt_unit\", found none; add one, or let software traverse"};
+    if (gpu.timing && (gpu.timing->operand_collectors > 0 || gpu.timing->accesses_in_flight > 1))
+        return GpuProblem{"traversal",
+                          fmt::format("expected \"software\" with operand_collectors or several accesses_in_flight, "
+                                      "found \"rt_unit\" with {} and {}; an RT unit is not modelled with them",
+                                      gpu.timing->operand_collectors, gpu.timing->accesses_in_flight)};
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<GpuProblem> find_problem(const Gpu& gpu) {
@@ -243,8 +259,9 @@ std::optional<GpuProblem> find_problem(const Gpu& gpu) {
                                           "unequal sectors are not modelled",
                                           first.sector_bytes, cache.sector_bytes)};
     }
-    if (gpu.timing) return find_problem(*gpu.timing, gpu);
-    return std::nullopt;
+    if (gpu.timing)
+        if (auto p = find_problem(*gpu.timing, gpu)) return p;
+    return find_traversal_problem(gpu);
 }
 
 }  // namespace raycache::cachesim

@@ -35,6 +35,7 @@ struct Explanation {
     /// `no_time` says why (no_time_note()).
     std::vector<SpeedUp> speed_ups;
     std::string no_time;
+    std::string traversal = "software";  ///< of those replays: traversal_name() of the GPU
     /// Where the launches are blocks of windows: the last cache is full if it is for both; speed_ups are as wide.
     std::optional<WindowSample> windows{};
 

@@ -125,6 +125,7 @@ std::string to_json(const Explanation& e) {
     json["base"] = trace(e, e.base);
     json["other"] = trace(e, e.other);
     if (!e.no_time.empty()) json["timed"] = nullptr;
+    if (!e.speed_ups.empty()) json["traversal"] = e.traversal;
     for (const SpeedUp& s : e.speed_ups)
         json["timed"].push_back({{"replay", s.replay.name},
                                  {"base_cycles", s.base.cycles},

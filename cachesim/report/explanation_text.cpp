@@ -9,6 +9,7 @@
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/speed_up_text.hpp"
 #include "cachesim/report/table.hpp"
+#include "cachesim/report/traversal_note.hpp"
 #include "cachesim/report/waterfall.hpp"
 #include "cachesim/report/window_notes.hpp"
 
@@ -241,6 +242,10 @@ std::string samples_of(const Explanation& e) {
     return samples;
 }
 
+std::string note_of_traversal(const Explanation& e) {
+    return e.traversal == "software" ? traversal_note({}, true) : traversal_note({e.gpu}, false);
+}
+
 }  // namespace
 
 std::string to_text(const Explanation& e, std::size_t width) {
@@ -261,7 +266,7 @@ std::string to_text(const Explanation& e, std::size_t width) {
     if (!e.no_time.empty())
         text += paragraph(e.no_time + '.');
     else if (!e.speed_ups.empty())
-        text += paragraph(sentence(e.speed_ups));
+        text += paragraph(sentence(e.speed_ups)) + paragraph(note_of_traversal(e) + '.');
     text += paragraph(sentence(e));
     if (difference_of(e).dram_compulsory_share >= mostly_compulsory)
         text += paragraph("note: " + compulsory_note(e.gpu) + '.', 2);

@@ -23,10 +23,11 @@ Json figure_of(const TimedRow& row, std::size_t i) {
 Json row_json(const TimedReport& report, std::size_t n) {
     const TimedRow& row = report.rows[n];
     Json out = names_of(row);
-    out.update({{"spp", row.spp}, {"samples", row.samples()}});
+    out.update({{"spp", row.spp}, {"samples", row.samples()}, {"traversal", row.traversal}});
     for (std::size_t i = 0; i < timed_figures.size(); ++i) {
         const TimedFigure& figure = timed_figures[i];
-        if (!figure.in_json() || (figure.presence == Presence::three_levels && !row.totals.levels[2].requests()))
+        if (!figure.in_json() || (figure.presence == Presence::three_levels && !row.totals.levels[2].requests()) ||
+            (figure.presence == Presence::rt_unit && !row.by_rt_unit()))
             continue;
         (figure.object ? out[figure.object] : out)[figure.name] = figure_of(row, i);
         if (i != TimedKey("dram_sectors").index) continue;
@@ -63,7 +64,7 @@ std::string titles() {
     }
     for (const TrafficKey key : of_traffic)
         has_interval(key) ? add_title(line, traffic_figures[key.index]) : line.text(traffic_figures[key.index].key);
-    add({"verdict_level", "verdict"});
+    add({"verdict_level", "verdict", "traversal"});
     return line.end();
 }
 
@@ -91,6 +92,7 @@ std::string fields(const TimedReport& report, std::size_t n) {
     const Verdict found = verdict_of(report, n).value_or(Verdict{});
     line.text(found.level.value_or(""));
     line.text(found.text);
+    line.text(row.traversal);
     return line.end();
 }
 
@@ -101,8 +103,7 @@ std::string to_json(const TimedReport& report) {
     for (std::size_t i = 0; i < report.rows.size(); ++i) rows.push_back(row_json(report, i));
     Json figures = report.traffic.rows.empty() ? Json::array() : figures_json(report.traffic, "traffic");
     for (const TimedFigure& figure : timed_figures)
-        if (figure.in_json() && (figure.presence == Presence::always || report.has_l3()))
-            figures.push_back(figure_json(figure, nullptr));
+        if (figure.in_json() && report.shows(figure.presence)) figures.push_back(figure_json(figure, nullptr));
     return dump({{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}, {"figures", figures}});
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cachesim/analysis/estimate.hpp"
+#include "cachesim/report/traversal_note.hpp"
 #include "cachesim/report/window_notes.hpp"
 
 namespace raycache::cachesim {
@@ -115,6 +116,33 @@ std::vector<std::uint32_t> TimedRow::samples() const { return samples_of(*this);
 bool TimedReport::has_l3() const {
     return std::any_of(rows.begin(), rows.end(),
                        [](const TimedRow& row) { return row.totals.levels[2].requests() > 0; });
+}
+
+bool TimedReport::has_rt_unit() const {
+    return std::any_of(rows.begin(), rows.end(), [](const TimedRow& row) { return row.by_rt_unit(); });
+}
+
+bool TimedReport::shows(Presence presence) const {
+    switch (presence) {
+        case Presence::three_levels:
+            return has_l3();
+        case Presence::rt_unit:
+            return has_rt_unit();
+        default:
+            return presence == Presence::always;
+    }
+}
+
+std::string traversal_note(const TimedReport& report) {
+    std::vector<std::string> units;
+    bool software = false;
+    for (const TimedRow& row : report.rows) {
+        if (!row.by_rt_unit())
+            software = true;
+        else if (std::find(units.begin(), units.end(), row.gpu) == units.end())
+            units.push_back(row.gpu);
+    }
+    return traversal_note(units, software);
 }
 
 std::optional<Verdict> verdict_of(const TimedReport& report, std::size_t row) {

@@ -16,7 +16,8 @@ namespace raycache::cachesim {
 
 /// All launches of one strategy on one GPU.
 struct TimedSeries : Origin {
-    std::string no_time;  ///< no_time_note() of the GPU: only the counts of the launches are to be shown
+    std::string no_time;                 ///< no_time_note() of the GPU: only the counts of the launches are to be shown
+    std::string traversal = "software";  ///< traversal_name() of the GPU
     std::vector<TimedStatistics> launches;  ///< one per sample index, ascending
 };
 
@@ -35,6 +36,7 @@ struct TimedRow : TimedSeries {
     const std::optional<Estimate>& operator[](TimedKey key) const { return figures[key.index]; }
 
     std::vector<std::uint32_t> samples() const;
+    bool by_rt_unit() const { return traversal != "software"; }
 };
 
 struct TimedReport {
@@ -46,7 +48,14 @@ struct TimedReport {
 
     /// Whether any row's GPU has an L3 that was asked for anything.
     bool has_l3() const;
+    /// Whether any row's BVH is walked by RT units.
+    bool has_rt_unit() const;
+    /// Whether the report shows such a figure, in some row.
+    bool shows(Presence) const;
 };
+
+/// Which traversal was modelled (traversal_note.hpp).
+std::string traversal_note(const TimedReport&);
 
 /// `traffic`: functional replays of the same launches, series by series in the same order, or none. Throws UsageError
 /// if `baseline` was given by the user but is in no series.

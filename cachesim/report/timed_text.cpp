@@ -76,8 +76,7 @@ std::string figures_table(const TimedReport& report, const Tables& tables, std::
     std::vector<std::size_t> columns;
     for (std::size_t i = 0; i < timed_figures.size(); ++i) {
         const TimedFigure& figure = timed_figures[i];
-        if (figure.column && figure.table == which && (figure.presence == Presence::always || report.has_l3()))
-            columns.push_back(i);
+        if (figure.column && figure.table == which && report.shows(figure.presence)) columns.push_back(i);
     }
     TextTable table = tables.make();
     for (const std::size_t i : columns) table.column(timed_figures[i].column, Align::right, timed_figures[i].rank);
@@ -141,7 +140,7 @@ std::string to_text(const TimedReport& report, std::size_t width) {
             traffic_table(report, tables, width) + '\n';
     for (const Table which : {Table::hits, Table::use, Table::rates})
         text += figures_table(report, tables, width, which) + '\n';
-    text += legend(report);
+    text += paragraph(traversal_note(report) + '.') + legend(report);
     if (!report.traffic.rows.empty()) text += factor_table(report.traffic, width);
     text += undefined_legend(text);
     std::string verdicts;

@@ -30,7 +30,7 @@ std::string table_of(const std::string& section) {
 
 /// The page with the table of each section put behind its mark, in place of the one that is there.
 std::string with_tables(std::string page) {
-    for (const char* section : {"", "registers", "front_end", "l1", "timing"}) {
+    for (const char* section : {"", "registers", "front_end", "l1", "timing", "rt_unit"}) {
         const std::string mark =
             *section ? fmt::format("<!-- keys of [{}] -->\n\n", section) : std::string("<!-- keys of the chip -->\n\n");
         const auto at = page.find(mark);
@@ -85,7 +85,7 @@ TEST_CASE("a value beyond the ends of its row is refused, and the ends are not r
     // A change that breaks a rule of several keys is refused with those; here it is the row that speaks.
     const auto message = [](const std::string& change) -> std::string {
         try {
-            load_gpu("v100", {"warps_per_sm=12", change});  // else resident warps follow from other keys
+            load_gpu("rtx-3070", {"warps_per_sm=12", change});  // else resident warps follow from other keys
         } catch (const Error& e) {
             return e.what();
         }

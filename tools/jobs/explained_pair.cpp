@@ -85,6 +85,7 @@ cachesim::Explanation begin_explanation(const ExplainedPair& pair, const cachesi
 void predict_speed_ups(cachesim::Explanation& explanation, const cachesim::Gpu& gpu, std::size_t launches) {
     explanation.no_time = cachesim::no_time_note(gpu);
     if (!explanation.no_time.empty()) return;
+    explanation.traversal = cachesim::traversal_name(gpu);
     const std::vector<double> none(launches);
     for (const cachesim::NamedIdeal& ideal : cachesim::idealised_replays())
         explanation.speed_ups.push_back({ideal, {}, {}, none, none});

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cachesim/report/traversal_note.hpp"
 #include "cachesim/report/window_notes.hpp"
 #include "tools/jobs/costs.hpp"
 #include "tracer/render.hpp"
@@ -92,6 +93,8 @@ QualityResult run(const QualityJob& job, const std::optional<cachesim::Gpu>& gpu
         report.notes.push_back("predicted times: " + cachesim::window_note(*timing->windows));
     if (gpu)
         if (std::string note = cachesim::no_time_note(*gpu); !note.empty()) report.notes.push_back(std::move(note));
+    if (gpu && gpu->traversal == cachesim::Traversal::rt_unit)
+        report.notes.push_back("predicted times: " + cachesim::traversal_note({gpu->name}, false));
     return result;
 }
 

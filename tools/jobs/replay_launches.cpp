@@ -34,7 +34,10 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
         for (const cachesim::Gpu& gpu : gpus) {
             Series& made = series.emplace_back();
             static_cast<cachesim::Origin&>(made) = origin_of(sources[s], gpu);
-            if constexpr (requires { made.no_time; }) made.no_time = cachesim::no_time_note(gpu);
+            if constexpr (requires { made.no_time; }) {
+                made.no_time = cachesim::no_time_note(gpu);
+                made.traversal = cachesim::traversal_name(gpu);
+            }
             made.launches.resize(header.launches.size());
         }
         for (std::uint32_t launch = 0; launch < header.launches.size(); ++launch) tasks.emplace_back(s, launch);
@@ -95,7 +98,7 @@ private:
 
 /// A series of both.
 struct BothSeries : cachesim::Series {
-    std::string no_time;
+    std::string no_time, traversal;
     std::vector<std::pair<cachesim::LaunchStatistics, cachesim::TimedStatistics>> launches;
 };
 
@@ -137,6 +140,7 @@ Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<ca
         cachesim::TimedSeries& timed = all.times.emplace_back();
         static_cast<cachesim::Origin&>(timed) = both;
         timed.no_time = both.no_time;
+        timed.traversal = both.traversal;
         for (auto& [counts, times] : both.launches) {
             counted.launches.push_back(std::move(counts));
             timed.launches.push_back(times);

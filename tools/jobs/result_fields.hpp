@@ -148,6 +148,10 @@ struct Fields<cachesim::TimedStatistics> {
                                     Field{"l1_data", &S::l1_data},
                                     Field{"l1_mshrs", &S::l1_mshrs},
                                     Field{"l2_mshrs", &S::l2_mshrs},
+                                    Field{"rt_loads", &S::rt_loads},
+                                    Field{"rt_box_tests", &S::rt_box_tests},
+                                    Field{"rt_triangle_tests", &S::rt_triangle_tests},
+                                    Field{"rt_warps", &S::rt_warps},
                                     Field{"visit_cycles", &S::visit_cycles},
                                     Field{"warps", &S::warps},
                                     Field{"warp_cycles", &S::warp_cycles},
@@ -160,7 +164,8 @@ template <>
 struct Fields<cachesim::TimedSeries> {
     using S = cachesim::TimedSeries;
     static constexpr std::tuple all = std::tuple_cat(
-        Fields<cachesim::Origin>::all, std::tuple{Field{"no_time", &S::no_time}, Field{"launches", &S::launches}});
+        Fields<cachesim::Origin>::all,
+        std::tuple{Field{"no_time", &S::no_time}, Field{"traversal", &S::traversal}, Field{"launches", &S::launches}});
 };
 
 template <>
@@ -263,7 +268,8 @@ struct Fields<cachesim::Explanation> {
                                     Field{"spp", &S::spp},         Field{"sector_bytes", &S::sector_bytes},
                                     Field{"by", &S::by},           Field{"base", &S::base},
                                     Field{"other", &S::other},     Field{"speed_ups", &S::speed_ups},
-                                    Field{"no_time", &S::no_time}, Field{"windows", &S::windows}};
+                                    Field{"no_time", &S::no_time}, Field{"traversal", &S::traversal},
+                                    Field{"windows", &S::windows}};
 };
 
 template <>

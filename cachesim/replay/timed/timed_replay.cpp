@@ -136,6 +136,10 @@ TimedStatistics TimedReplay::Impl::between(const State& from, const State& to) c
                   std::uint64_t{gpu.levels.back().slices} * last.mshrs};
     t.crossbar = {asked * memory.crossbar_cycles_per_sector(), gpu.sms};
     t.l2_slices = {asked * memory.slice_cycles_per_sector(), gpu.levels.back().slices};
+    if (gpu.traversal == Traversal::rt_unit) {
+        t.rt_box_tests.copies = t.rt_triangle_tests.copies = gpu.sms;
+        t.rt_warps.copies = std::uint64_t{gpu.sms} * gpu.rt_unit->warps;
+    }
     t.dram = {static_cast<double>(t.dram_sectors) * cycles_per_sector, rules.timing.dram_channels};
     return t;
 }

@@ -13,6 +13,20 @@ std::uint32_t whole(double number) {
     return std::floor(number) == number ? static_cast<std::uint32_t>(std::min(number, most)) : 0;
 }
 
+/// What a lane of a visit to the region has tested by an RT unit; 0: nothing.
+std::uint32_t tests_of(const traces::Region& region) {
+    const traces::ObjectKindRole& role = traces::role_of(region.kind);
+    if (!role.is_step) return 0;
+    return role.charge == traces::Charge::node ? std::max(2u, std::uint32_t{region.degree}) : 1;
+}
+
+/// Nodes and triangles as the RT unit loads them: all lanes of a warp together.
+FrontEnd front_end_of(const RtUnitTiming& unit) {
+    FrontEnd front_end;
+    front_end.load_bytes = unit.load_bytes;
+    return front_end;
+}
+
 }  // namespace
 
 std::uint32_t visit_instructions(const Timing& timing, traces::ObjectKind kind, unsigned children) {
@@ -47,7 +61,12 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
         fill_sectors.push_back(std::max(1u, level.fill_bytes / level.sector_bytes));
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
+        const bool rt = g.traversal == Traversal::rt_unit;
+        if (rt) {
+            tests.push_back(tests_of(regions[i]));
+            triangle.push_back(traces::role_of(regions[i].kind).charge == traces::Charge::triangle);
+        }
+        shapes.emplace_back(regions[i], i, rt && tests[i] > 0 ? front_end_of(*g.rt_unit) : g.front_end, g.l1(), ids);
         instructions.push_back(visit_instructions(timing, regions[i].kind, regions[i].degree));
     }
     if (timing.leaf_instructions > 0) leaves.emplace(regions);

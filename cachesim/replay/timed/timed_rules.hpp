@@ -41,6 +41,7 @@ struct TimedRules {
     bool three_levels() const { return gpu.levels.size() == 3; }
     /// Whether instructions go one by one through collectors. Where nothing is ever taken there is nothing to wait for.
     bool collectors() const { return timing.operand_collectors > 0 && !ideal.infinite_bandwidth; }
+    bool rt_unit() const { return !tests.empty(); }
     /// Of one visit.
     std::uint32_t most_loads() const {
         std::uint32_t most = 1;
@@ -56,7 +57,10 @@ struct TimedRules {
     std::vector<LineMap> maps;                ///< of each level
     std::vector<LoadShape> shapes;            ///< of each region
     std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads
-    std::optional<LeafStarts> leaves;         ///< if they cost instructions of their own
+    /// Of the RT unit for each lane of a visit to each region; 0: the SM visits. Empty where software traverses.
+    std::vector<std::uint32_t> tests;
+    std::vector<bool> triangle;        ///< those tests are of a triangle each, not of boxes
+    std::optional<LeafStarts> leaves;  ///< if they cost instructions of their own
     std::uint32_t sectors_per_line;
     int line_of_sector;  ///< log2 of it
     unsigned cta_slots;

@@ -28,6 +28,7 @@ TimedSm::TimedSm(const TimedRules& rules, LineIds& ids, std::uint16_t number)
         ports_.emplace_back(rules, ids, number, static_cast<std::uint8_t>(i), data_.data(), private_ ? asked_ : misses);
     for (std::uint32_t i = 0; i < data_.size(); ++i) data_[i].flight = i / data_per_flight_;
     if (rules.collectors()) flow_.emplace(rules.timing, flights_.size());
+    if (rules.rt_unit()) rt_unit_.emplace(*rules.gpu.rt_unit, rules.ideal.infinite_bandwidth, flights_.size());
 }
 
 void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle from) {
@@ -70,6 +71,12 @@ TimedStatistics TimedSm::statistics(Cycle now) const {
         all.l1_mshrs.busy += counts.registers;
     }
     if (private_) all.levels[1] += private_->counts();
+    if (rt_unit_) {
+        all.rt_loads = rt_unit_->loads();
+        all.rt_box_tests.busy = rt_unit_->boxes.busy();
+        all.rt_triangle_tests.busy = rt_unit_->triangles.busy();
+        all.rt_warps.busy = static_cast<double>(rt_unit_->place_cycles(now));
+    }
     for (const Warp& warp : warps_)
         if (warp.records.resident()) all.warp_cycles += now - std::min(now, warp.records.since());
     return all;
@@ -87,6 +94,7 @@ bool TimedSm::begin_visit(std::uint32_t number) {
     visit.passed = visit.there = 0;
     flight.loads = visit.shape->loads;
     flight.instructions = rules_.instructions[access->region] + access->leaf_instructions;
+    if (rt_unit_) flight.tests = access->lanes * rules_.tests[access->region];
     flight.issued = 0;
     flight.first_issue = never;
     ++counts_.warp_accesses;
@@ -97,15 +105,23 @@ bool TimedSm::begin_visit(std::uint32_t number) {
 /// The flight's instructions are done.
 void TimedSm::make_ready(std::uint32_t number, Cycle time) {
     if (const std::uint32_t count = shading(number)) {
+        leave_rt_unit(number, time);
         events_.push(run_instructions(number, time, count, 0), number);
         return;
     }
     if (!begin_visit(number)) {
+        leave_rt_unit(number, time);
         end_flight(number, time);
         return;
     }
     data_[number] = {0, 0, number, false};
-    const Flight& flight = flights_[number];
+    Flight& flight = flights_[number];
+    flight.in_rt_unit = flight.tests > 0;
+    if (flight.in_rt_unit) {
+        begin_in_rt_unit(number, time);
+        return;
+    }
+    leave_rt_unit(number, time);
     schedulers_[flight.scheduler].make_ready(flight.bit);
     note(flight.scheduler);
 }
@@ -136,6 +152,11 @@ void TimedSm::compute(std::uint32_t number, Cycle time) {
     flight.computing = true;
     counts_.visit_cycles += time - flight.first_issue;
     warps_[slot_of(number)].records.prefetch();
+    if (flight.in_rt_unit) {
+        const bool triangle = rules_.triangle[flight.visit.region];
+        events_.push((triangle ? rt_unit_->triangles : rt_unit_->boxes).run(time, flight.tests), number);
+        return;
+    }
     const std::uint32_t early = std::min(flight.loads - 1, flight.instructions);
     events_.push(run_instructions(number, time, flight.instructions, early), number);
 }
@@ -143,7 +164,7 @@ void TimedSm::compute(std::uint32_t number, Cycle time) {
 /// Before this cycle nothing happens here unless a reply arrives.
 Cycle TimedSm::next_time() const {
     if (flow_ && !flow_->idle()) return now_;
-    if (can_issue_ || fetches_ahead()) return now_;
+    if (can_issue() || fetches_ahead()) return now_;
     Cycle next = events_.time();
     for (const Port& port : ports_)
         if (!port.empty()) next = std::min(next, port.free());
@@ -168,7 +189,9 @@ void TimedSm::serve(Port& port, Cycle now, Cycle end) {
     const auto load = port.serve(now, end);
     if (!load) return;
     Flight& flight = flights_[load->flight];
-    if (!flow_) {
+    if (flight.in_rt_unit) {
+        rt_unit_->load_passed();
+    } else if (!flow_) {
         schedulers_[flight.scheduler].load_passed();
         note(flight.scheduler);
     }
@@ -249,6 +272,7 @@ void TimedSm::run(Cycle end) {
         }
         for (std::uint64_t left = can_issue_; left; left &= left - 1)
             issue(static_cast<unsigned>(std::countr_zero(left)), now_);
+        if (rt_unit_) issue_of_rt_unit(now_);
         Cycle next = std::min(end, events_.time());
         for (Port& port : ports_) {
             while (!port.empty() && port.free() <= now_) serve(port, now_, end);
@@ -259,7 +283,7 @@ void TimedSm::run(Cycle end) {
             if (!private_->idle()) next = now_ + 1;
         }
         // What the ports took in leaves room for more.
-        now_ = can_issue_ ? now_ + 1 : std::max(now_ + 1, std::min(next, events_.time()));
+        now_ = can_issue() ? now_ + 1 : std::max(now_ + 1, std::min(next, events_.time()));
     }
     now_ = end;
 }

@@ -4,7 +4,8 @@
 // A warp that is ready issues the loads of its next visit, one per scheduler and cycle. Loads wait in order for the
 // port of their L1. When the last sector of the visit is there, l1_latency later the warp issues the instructions of
 // that visit, and is ready again. With Timing::operand_collectors each instruction goes its own way
-// (instruction_flow.hpp).
+// (instruction_flow.hpp). With Traversal::rt_unit visits to nodes and triangles belong to the RT unit (rt_unit.hpp),
+// which shares the ports with the schedulers.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +22,7 @@
 #include "cachesim/replay/timed/port.hpp"
 #include "cachesim/replay/timed/private_level.hpp"
 #include "cachesim/replay/timed/resident_warp.hpp"
+#include "cachesim/replay/timed/rt_unit.hpp"
 #include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 #include "cachesim/replay/timed/warp_scheduler.hpp"
@@ -77,6 +79,8 @@ private:
     struct alignas(64) Flight {
         std::uint8_t scheduler = 0, bit = 0;  ///< its place there
         bool computing = false;
+        bool in_rt_unit = false;                    ///< the visit
+        std::uint32_t tests = 0;                    ///< of the visit, there
         std::uint32_t loads = 0, instructions = 0;  ///< of the visit
         std::uint32_t issued = 0;                   ///< loads
         Cycle first_issue = 0;
@@ -95,8 +99,12 @@ private:
     bool begin_visit(std::uint32_t flight);
     void make_ready(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);
+    void begin_in_rt_unit(std::uint32_t flight, Cycle);
+    void leave_rt_unit(std::uint32_t flight, Cycle);
+    void issue_of_rt_unit(Cycle);
     Cycle run_instructions(std::uint32_t flight, Cycle, std::uint32_t count, std::uint32_t early);
     void compute(std::uint32_t flight, Cycle);
+    bool can_issue() const { return can_issue_ || (rt_unit_ && rt_unit_->can_issue()); }
     void issue(unsigned scheduler, Cycle);
     void serve(Port&, Cycle, Cycle end);
     void serve_private(Cycle);
@@ -132,6 +140,7 @@ private:
     std::vector<PrivateLevel::Answer> answered_;  ///< by private_
     EventWheel events_;                           ///< flights whose data are there, and flights that begin a visit
     std::optional<InstructionFlow> flow_;         ///< with operand collectors
+    std::optional<RtUnit> rt_unit_;               ///< its warps are flights
     TimedStatistics counts_;                      ///< but for those of ports and private_
     Cycle now_ = 0;
     Cycle last_end_ = 0;

@@ -24,12 +24,14 @@ void for_each_counter(TimedStatistics& a, const TimedStatistics& b, const Use& u
     for (const auto count : {&TimedStatistics::cycles, &TimedStatistics::rays, &TimedStatistics::warp_accesses,
                              &TimedStatistics::lane_accesses, &TimedStatistics::instructions, &TimedStatistics::loads,
                              &TimedStatistics::dram_sectors, &TimedStatistics::visit_cycles, &TimedStatistics::warps,
-                             &TimedStatistics::warp_cycles})
+                             &TimedStatistics::warp_cycles, &TimedStatistics::rt_loads})
         use(a.*count, b.*count);
     for (std::size_t level = 0; level < most_levels; ++level) for_each_counter(a.levels[level], b.levels[level], use);
-    for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
-                                &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
-                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs})
+    for (const auto resource :
+         {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar, &TimedStatistics::l2_slices,
+          &TimedStatistics::dram, &TimedStatistics::l1_tags, &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs,
+          &TimedStatistics::l2_mshrs, &TimedStatistics::rt_box_tests, &TimedStatistics::rt_triangle_tests,
+          &TimedStatistics::rt_warps})
         use((a.*resource).busy, (b.*resource).busy);
     use(a.seconds, b.seconds);
 }
@@ -54,9 +56,11 @@ TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
     warp_slots = other.warp_slots ? other.warp_slots : warp_slots;
     peak_l2_gb_s = std::max(peak_l2_gb_s, other.peak_l2_gb_s);
     peak_dram_gb_s = std::max(peak_dram_gb_s, other.peak_dram_gb_s);
-    for (const auto resource : {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar,
-                                &TimedStatistics::l2_slices, &TimedStatistics::dram, &TimedStatistics::l1_tags,
-                                &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs, &TimedStatistics::l2_mshrs})
+    for (const auto resource :
+         {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar, &TimedStatistics::l2_slices,
+          &TimedStatistics::dram, &TimedStatistics::l1_tags, &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs,
+          &TimedStatistics::l2_mshrs, &TimedStatistics::rt_box_tests, &TimedStatistics::rt_triangle_tests,
+          &TimedStatistics::rt_warps})
         (this->*resource).copies = (other.*resource).copies;
     return *this;
 }

@@ -45,6 +45,11 @@ struct TimedStatistics {
     Resource l1_tags, l1_data;    ///< parts of what the port does (L1Port::tags)
     Resource l1_mshrs, l2_mshrs;  ///< registers for misses; of L3 where there is one
 
+    /// Of RT units (Traversal::rt_unit): load instructions that no scheduler issues, not among `loads`; the pipelines
+    /// of tests; places for warps.
+    std::uint64_t rt_loads = 0;
+    Resource rt_box_tests, rt_triangle_tests, rt_warps;
+
     /// From the issue of a visit's first load to its last data, summed over warp accesses.
     std::uint64_t visit_cycles = 0;
 

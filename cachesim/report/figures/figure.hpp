@@ -28,6 +28,7 @@ enum class Better { neither, lower, higher };
 enum class Presence {
     always,
     three_levels,  ///< some GPU has an L3
+    rt_unit,       ///< some GPU has its RT units walk the BVH
     wavefront,     ///< some trace is of a wavefront
 };
 

@@ -128,6 +128,13 @@ constexpr TimedFigure utilisation(const char* key, const char* title, const char
             .in_time = true};
 }
 
+/// Of GPUs whose RT units walk the BVH.
+constexpr TimedFigure of_rt_unit(TimedFigure f) {
+    f.presence = Presence::rt_unit;
+    f.field = Field::json;
+    return f;
+}
+
 inline constexpr std::array times{
     TimedFigure{.key = "cycles",
                 .of = Of::total,
@@ -186,6 +193,8 @@ inline constexpr std::array times{
     total("instructions", "instructions", "instructions", "instructions of warps: loads, and those between accesses",
           quantity<&TimedStatistics::instructions>("instructions")),
     total("loads", "loads", "instructions", "load instructions of warps", quantity<&TimedStatistics::loads>("loads")),
+    of_rt_unit(total("rt_loads", "RT loads", "loads", "loads of RT units, each of all lanes of a warp, besides",
+                     quantity<&TimedStatistics::rt_loads>("rt_loads"))),
 };
 
 inline constexpr std::array costs{
@@ -229,6 +238,12 @@ inline constexpr std::array costs{
                                             "share of L1's registers for sectors on their way that are taken", 1),
     utilisation<&TimedStatistics::l2_mshrs>("l2_mshrs", "L2 MSHRs", "L2 MSHRs %",
                                             "the same of the level that all SMs share", 1),
+    of_rt_unit(utilisation<&TimedStatistics::rt_box_tests>("rt_box_tests", "RT box tests", "RT boxes %",
+                                                           "share of the time that RT units test boxes")),
+    of_rt_unit(utilisation<&TimedStatistics::rt_triangle_tests>(
+        "rt_triangle_tests", "RT triangle tests", "RT triangles %", "share of the time that RT units test triangles")),
+    of_rt_unit(utilisation<&TimedStatistics::rt_warps>("rt_warps", "RT warps", "RT warps %",
+                                                       "share of the RT units' places for warps that are taken", 1)),
     TimedFigure{.key = "l2_gb_s",
                 .of = Of::quotient,
                 .title = "L2 bandwidth",

@@ -228,6 +228,7 @@ Predicted Estimator::result() const {
             cachesim::TimedSeries& timed = all.times.emplace_back();
             static_cast<cachesim::Origin&>(timed) = counted;
             timed.no_time = cachesim::no_time_note(gpus_[g]);
+            timed.traversal = cachesim::traversal_name(gpus_[g]);
             for (const auto& block : c.blocks) timed.launches.push_back(block[g].times.front());
         }
     return all;
