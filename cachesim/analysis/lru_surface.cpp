@@ -156,7 +156,7 @@ void LruSurface::check_memory() const {
 }
 
 std::size_t LruSurface::bytes() const {
-    std::size_t sum = of_.capacity() * (sizeof(of_[0]) + sizeof(numbers_[0]));
+    std::size_t sum = of_.capacity() * (sizeof(void*) + sizeof(numbers_[0]));
     for (const auto& of_sm : caches_)
         for (const auto& cache : of_sm) {
             if (!cache) continue;

@@ -46,7 +46,7 @@ void for_each_size(const CurveReport& report, std::size_t level, const CurveRow&
         if (size >= row.least_ways() * row.way_bytes() && size % row.way_bytes() == 0) use(size / row.way_bytes());
 }
 
-Json row_json(const CurveReport& report, std::size_t l, const LevelCurve& level, std::size_t r) {
+Json organisation_json(const CurveReport& report, std::size_t l, const LevelCurve& level, std::size_t r) {
     const CurveRow& row = level.rows[r];
     const CacheGeometry& g = row.geometry;
     std::uint64_t asked = 0;
@@ -92,7 +92,7 @@ std::string to_json(const CurveReport& report) {
             const LevelCurve& level = s.levels[l];
             const CurveRow& own = level.rows.front();
             Json rows = Json::array();
-            for (std::size_t r = 0; r < level.rows.size(); ++r) rows.push_back(row_json(report, l, level, r));
+            for (std::size_t r = 0; r < level.rows.size(); ++r) rows.push_back(organisation_json(report, l, level, r));
             levels.push_back({{"level", level_name(level.level)},
                               {"fetched_from", traffic_name(level.level, s.caches.levels)},
                               {"own_bytes", own.geometry.ways * own.way_bytes()},

@@ -124,6 +124,7 @@ class Install(ProgramTest):
         self.installed("raycache-report", "study.json", "-o", "page.html")
         self.assertIn("</html>", self.path("page.html").read_text("utf-8"))
         self.assertIn("usage", self.installed("raycache-plot-sweep", "--help"))
+        self.assertIn("usage", self.installed("raycache-plot-curve", "--help"))
 
     def test_python_imports_the_reader_of_traces(self):
         trace = self.capture()

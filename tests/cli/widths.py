@@ -46,6 +46,10 @@ class Widths(ProgramTest):
                      ["--gpu", "rtx-2080-ti", *LONG]):
             self.fits("explain", base, other, *more)
 
+    def test_curve_keeps_to_100_columns(self):
+        self.fits("curve", "--scene", *SCENE, *LAUNCHES, "--spp", "64", "--gpu", "h100", *LONG, "--policy", "belady",
+                  "--strategy", "net-micro-jitter-fast,cranley-patterson,micro-jitter")
+
     def test_quality_and_sweep_keep_to_100_columns(self):
         self.fits("quality", *QUALITY, "--gpu", "gtx-980-ti", *LONG, "--pairs", "--repeats", "2")
         self.fits("quality", *QUALITY, "--gpu", "gtx-980-ti", "--sequence", "sobol-owen-02,sobol-owen-4d", "--spp", "16,64",

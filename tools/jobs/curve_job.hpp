@@ -25,8 +25,8 @@ struct CurveJob {
 
     /// Names that policies may have.
     static std::vector<std::string> policy_names();
-    /// Throws UsageError for a policy of no such name, for a level that the GPU has not, for sizes with more levels than
-    /// one and for one that is no whole number of ways of the GPU's own sets, and as LaunchSettings::check() does.
+    /// Throws UsageError for a policy of no such name, for a level that the GPU has not, for sizes with more levels
+    /// than one and for one that is no whole number of ways of the GPU's own sets, and as LaunchSettings::check() does.
     void check(const cachesim::Gpu&) const;
 };
 
