@@ -102,4 +102,27 @@ unsigned LoadCounter::general(const Loads& loads, std::uint32_t mask, const std:
     return requests;
 }
 
+std::uint32_t LoadCounter::line_requests(std::size_t region, std::uint32_t mask, const std::uint32_t* elements,
+                                         std::uint64_t line, std::uint32_t sectors) const {
+    const Loads& loads = regions_[region];
+    const std::uint64_t sector_bytes = std::uint64_t{1} << sector_shift_;
+    constexpr std::uint64_t nobody = ~std::uint64_t{0};
+    std::array<std::uint64_t, 32> fetcher;  // of each sector: load, then group of lanes
+    fetcher.fill(nobody);
+    for (std::uint32_t lanes = mask; lanes; lanes &= lanes - 1, ++elements) {
+        const auto group = static_cast<std::uint64_t>(std::countr_zero(lanes)) / loads.lanes_per_request;
+        const std::uint64_t begin = loads.region.address(*elements), end = begin + loads.region.element_size;
+        for (std::uint32_t left = sectors; left; left &= left - 1) {
+            const auto sector = static_cast<unsigned>(std::countr_zero(left));
+            const std::uint64_t at = line + sector * sector_bytes;
+            if (end <= at || begin >= at + sector_bytes) continue;
+            const std::uint64_t load = begin >= at ? 0 : (at - begin) / loads.bytes;
+            fetcher[sector] = std::min(fetcher[sector], load * traces::warp_lanes + group);
+        }
+    }
+    std::sort(fetcher.begin(), fetcher.end());
+    const auto end = std::unique(fetcher.begin(), std::find(fetcher.begin(), fetcher.end(), nobody));
+    return static_cast<std::uint32_t>(end - fetcher.begin());
+}
+
 }  // namespace raycache::cachesim

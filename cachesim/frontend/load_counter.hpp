@@ -39,6 +39,13 @@ public:
         return general(loads, mask, elements);
     }
 
+    /// How many requests the access makes for these sectors of a line if none of them is in the cache: of each sector,
+    /// the first load (of the first group of lanes) that reads it fetches it, and the sectors that one load fetches of
+    /// one line are one request to the level below. `line`: address of its first byte. Sectors that no lane reads count
+    /// for nothing. Not for what a sort moves.
+    std::uint32_t line_requests(std::size_t region, std::uint32_t mask, const std::uint32_t* elements,
+                                std::uint64_t line, std::uint32_t sectors) const;
+
 private:
     enum class Form {
         /// The whole warp goes together, and no two elements share a sector: the elements are as many as their sectors

@@ -30,7 +30,10 @@ Hierarchy::Hierarchy(const Gpu& gpu, const std::vector<traces::Region>& regions,
 }
 
 void Hierarchy::observe(RequestSink& sink) {
-    if (std::any_of(rules_.kinds.begin(), rules_.kinds.end(), is_between_kernels))
+    bool above = false;  // what is written passes these levels by, unheard
+    for (std::size_t level = 0; level < rules_.shared; ++level)
+        for (std::uint32_t sm = 0; sm < rules_.gpu.sms; ++sm) above = above || sink.wants(level, sm);
+    if (above && std::any_of(rules_.kinds.begin(), rules_.kinds.end(), is_between_kernels))
         throw Error("trace of a wavefront: expected one of a megakernel, whose requests can be followed");
     observers_.add(sink);
 }

@@ -34,7 +34,7 @@ public:
     Hierarchy& operator=(const Hierarchy&) = delete;
 
     /// From now on the sink, which must outlive this object, hears of the caches that it wants, beside others. Throws
-    /// Error for the regions of a wavefront.
+    /// Error for the regions of a wavefront, unless it is of the last level alone.
     void observe(RequestSink&);
 
     /// Rounds of a window: every SM may run so many rounds ahead of the others.

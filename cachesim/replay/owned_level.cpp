@@ -43,6 +43,7 @@ void OwnedLevel::look_up(Lookups& lookups, const AccessOrigin* window, Workspace
 void OwnedLevel::answer(Lookups& lookups, const AccessOrigin* window, Workspace& work) {
     work.asked.assign(lookups.sectors.begin(), lookups.sectors.begin() + static_cast<std::ptrdiff_t>(lookups.count));
     level_->process(sets(lookups, window, work), lookups.lines.data(), lookups.sectors.data(), lookups.count);
+    if (observers_.any() && observers_.want(number_, sm_)) report(lookups, window, work);
 }
 
 void OwnedLevel::report(const Lookups& answers, const AccessOrigin* window, Workspace& work) const {

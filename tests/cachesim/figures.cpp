@@ -102,10 +102,15 @@ TEST_CASE("the columns of a table are figures, and so are the fields of CSV") {
 }
 
 TEST_CASE("a figure that names a metric of the profiler has its value") {
-    const Report report = make_report(two_strategies(2), "", GroupBy::none);
-    const Row& row = report.rows[0];
+    std::vector<ProfiledSeries> series;
+    for (const Series& s : two_strategies(2)) {
+        static_cast<Series&>(series.emplace_back()) = s;
+        series.back().instructions = s.launches;
+    }
+    const ProfilerReport made = make_profile(series, "", GroupBy::none);
+    const Row& row = made.report.rows[0];
     std::map<std::string, double> metrics;
-    const json profile = json::parse(to_json(ProfilerReport{report}));
+    const json profile = json::parse(to_json(made));
     for (const json& metric : profile["rows"][0]["metrics"])
         if (!metric["value"].is_null()) metrics[metric["name"]] = metric["value"];
     int named = 0;

@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pty
+import re
 import subprocess
 
 from support import GPU, LAUNCHES, PICTURE, RAYCACHE, ROOT, SCENE, ProgramTest, main
@@ -94,7 +95,14 @@ class Reports(ProgramTest):
         values = dict(line.split() for line in text.splitlines() if "__" in line and len(line.split()) == 2)
         self.assertEqual(int(values["l1tex__t_sectors_pipe_lsu_mem_global_op_ld.sum"]), totals["l1_requests"])
         self.assertEqual(int(values["dram__bytes_read.sum"]), 32 * totals["dram_sectors"])
-        self.assertEqual(len(values), 9)
+        self.assertEqual(int(values["l1tex__t_requests_pipe_lsu_mem_global_op_ld.sum"]), totals["loads"])
+        self.assertEqual(int(values["lts__t_sectors_srcunit_tex_op_read.sum"]), totals["l2_sectors"])
+        requests = int(values["lts__t_requests_srcunit_tex_op_read.sum"])
+        self.assertLess(totals["l2_sectors"] / 4, requests)  # at most the sectors of a line, at least one
+        self.assertLess(requests, totals["l2_sectors"])
+        self.assertIn(f"L2 sectors per read request  {totals['l2_sectors'] / requests:.2f}", " ".join(
+            re.sub(" {2,}", "  ", line) for line in text.splitlines()))
+        self.assertNotIn("per_second", text)
         self.assertGreater(totals["l1_requests"], totals["sectors"])
         self.assertEqual(self.succeeds(*COMPARE, "--counters", "ncu").text.count("dram__bytes_read.sum"), 3)
         self.refuses(2, "replay", trace, *GPU, "--counters", "nvprof", mentions=["--counters", "nvprof"])
@@ -112,10 +120,26 @@ class Reports(ProgramTest):
         lines = list(csv.DictReader(io.StringIO(table)))
         self.assertEqual([line["group"] for line in lines], ["camera", "bounce", "shadow"])
         for row, line in zip(rows, lines, strict=True):
-            for name, value in map(dict.values, row["metrics"]):
+            for name, value, unit in map(dict.values, row["metrics"]):
                 self.assertEqual(value, float(line[name]), name)
+                self.assertEqual(unit == "%", name.endswith(".pct"))
                 self.assertIn(name, printed)
             self.assertEqual(row["group"], line["group"])
+
+    def test_with_time_the_counters_of_a_profiler_have_rates_and_shares_of_peaks(self):
+        trace = self.capture()
+        timed = self.succeeds("replay", trace, *GPU, "--timed", "--json").json["rows"][0]
+        counters = self.succeeds("replay", trace, *GPU, "--timed", "--counters", "ncu", "--json").json["rows"][0]
+        metrics = {metric["name"]: metric["value"] for metric in counters["metrics"]}
+        self.assertEqual(metrics["gpc__cycles_elapsed.max"], timed["cycles"])
+        self.assertAlmostEqual(metrics["dram__bytes.sum.per_second"], 1e9 * timed["dram_gb_s"], delta=1)
+        for name, use in (("gpu__dram", "dram"), ("lts__", "l2_slices"), ("l1tex__", "l1_port")):
+            name = name.removesuffix("__") + ("_throughput" if name == "gpu__dram" else "__throughput")
+            self.assertAlmostEqual(metrics[name + ".avg.pct_of_peak_sustained_elapsed"],
+                                   100 * timed["utilisation"][use], places=6)
+        self.assertAlmostEqual(metrics["l1tex__t_bytes_pipe_lsu_mem_global_op_ld.sum.per_second"],
+                               32 * timed["traffic"]["totals"]["l1_requests"] / timed["seconds"], delta=10)
+        self.refuses(2, "replay", trace, *GPU, "--timed", "--counters", "ncu", "--by", "ray")
 
     def test_stores_and_sorts_of_a_wavefront_have_names_of_their_own(self):
         wave = ["--strategy", "cranley-patterson+morton"]

@@ -93,7 +93,6 @@ class Timed(ProgramTest):
     def test_options_that_exclude_each_other_are_refused(self):
         trace = self.capture("trace.rct", "--bounces", "0")
         self.refuses(2, "replay", trace, "--gpu", "v100", "--timed", "--by", "bounce")
-        self.refuses(2, "replay", trace, "--gpu", "v100", "--timed", "--counters", "ncu")
 
 
 class NoTime(ProgramTest):

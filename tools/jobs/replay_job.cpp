@@ -6,28 +6,53 @@
 
 namespace raycache::tools {
 
+namespace {
+
+void say_resumable(const ReplayJob& job, Observer& observer) {
+    if (job.launches.of_traces()) return;
+    observer.resumable(
+        "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "
+        "those");
+}
+
+/// Of whole launches.
+void say_costs(const ReplayJob& job, std::size_t gpus, Observer& observer) {
+    if (job.launches.of_traces()) return;
+    double seconds = 0;
+    for (const auto& s : job.launches.captures())
+        seconds += trace_cost(s) + static_cast<double>(gpus) * replay_cost(s, job.timed);
+    observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
+}
+
+Subject subject_of(const Launches& launches, const std::vector<cachesim::Gpu>& gpus) {
+    Subject subject;
+    for (const cachesim::Gpu& gpu : gpus) subject.gpus.push_back(gpu_json(gpu));
+    subject.traces = launches.subject();
+    return subject;
+}
+
+}  // namespace
+
+ProfileResult profile(const ReplayJob& job, const std::vector<cachesim::Gpu>& gpus, Observer& observer,
+                      const FileNames& outputs) {
+    say_resumable(job, observer);
+    say_costs(job, gpus.size(), observer);
+    const Launches launches(job.launches, outputs, observer);
+    return {subject_of(launches, gpus), profile(launches.sources(), gpus, job.timed, observer)};
+}
+
 ReplayResult run(const ReplayJob& job, const std::vector<cachesim::Gpu>& gpus, Observer& observer,
                  const FileNames& outputs) {
     if (gpus.empty()) throw UsageError("no GPU; expected at least one");
-    if (!job.launches.of_traces()) {
-        observer.resumable(
-            "nothing can be resumed: run the same command again, or keep traces with 'raycache capture' and compare "
-            "those");
-    }
+    say_resumable(job, observer);
     if (job.estimate.windows) {
         Estimated estimated = estimate(job.launches, job.estimate, gpus, job.timed, observer, outputs);
         return {std::move(estimated.subject), std::move(estimated.result.traffic), std::move(estimated.result.times)};
     }
-    if (!job.launches.of_traces()) {
-        double seconds = 0;
-        for (const auto& s : job.launches.captures())
-            seconds += trace_cost(s) + static_cast<double>(gpus.size()) * replay_cost(s, job.timed);
-        observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
-    }
+    say_costs(job, gpus.size(), observer);
     const Launches launches(job.launches, outputs, observer);
     ReplayResult result;
-    for (const cachesim::Gpu& gpu : gpus) result.subject.gpus.push_back(gpu_json(gpu));
-    result.subject.traces = launches.subject();
+    result.subject = subject_of(launches, gpus);
     if (job.timed) {
         Predicted both = predict(launches.sources(), gpus, observer);
         result.series = std::move(both.traffic);

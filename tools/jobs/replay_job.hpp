@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cachesim/report/profiler.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/jobs/gpu_settings.hpp"
@@ -24,6 +25,17 @@ struct ReplayResult {
     std::vector<cachesim::Series> series;
     std::vector<cachesim::TimedSeries> times;  ///< in the same order; none unless asked for
 };
+
+/// What make_profile() takes.
+struct ProfileResult {
+    Subject subject;
+    std::vector<cachesim::ProfiledSeries> series;  ///< one per source and GPU, sources first
+};
+
+/// The job with what a profiler's metrics need, of whole launches: job.estimate must ask for no windows. The rest as
+/// run().
+ProfileResult profile(const ReplayJob&, const std::vector<cachesim::Gpu>& gpus, Observer&,
+                      const FileNames& outputs = {});
 
 /// `gpus`: those of job.gpu. `outputs`: files that the caller is going to write, refused where the job reads one of
 /// them. Throws UsageError for settings that make no sense, else Error as Launches does.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <type_traits>
 
+#include "cachesim/replay/l2_requests.hpp"
 #include "cachesim/replay/replay.hpp"
 
 namespace raycache::tools {
@@ -96,6 +98,48 @@ private:
     cachesim::TimedReplay timed_;
 };
 
+/// What one launch of a ProfiledSeries is.
+struct ProfiledLaunch {
+    cachesim::LaunchStatistics counted, instructions;
+    std::optional<cachesim::TimedStatistics> time;
+};
+
+/// A functional replay that is listened to and, if asked for, a timed one, fed alike.
+class ProfilingReplay {
+public:
+    ProfilingReplay(const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions, std::uint32_t sample,
+                    bool timed)
+        : requests_(std::make_unique<cachesim::L2RequestCounter>(gpu, regions)), counted_(gpu, regions, sample) {
+        counted_.observe(*requests_);
+        if (timed) timed_.emplace(gpu, regions, sample);
+    }
+
+    void push(const std::shared_ptr<const traces::WarpTrace>& warp) {
+        counted_.push(warp);
+        if (timed_) timed_->push(warp);
+    }
+    void end_kernel() {
+        counted_.end_kernel();
+        if (timed_) timed_->end_kernel();
+    }
+    ProfiledLaunch finish() {
+        ProfiledLaunch launch;
+        launch.counted = counted_.finish();
+        launch.instructions = requests_->in_instructions(launch.counted);
+        if (timed_) launch.time = timed_->finish();
+        return launch;
+    }
+
+private:
+    std::unique_ptr<cachesim::L2RequestCounter> requests_;  ///< must not move
+    cachesim::Replay counted_;
+    std::optional<cachesim::TimedReplay> timed_;
+};
+
+struct ProfiledLaunches : cachesim::Origin {
+    std::vector<ProfiledLaunch> launches;
+};
+
 /// A series of both.
 struct BothSeries : cachesim::Series {
     std::string no_time, traversal;
@@ -144,6 +188,25 @@ Predicted predict(const std::vector<LaunchSource>& sources, const std::vector<ca
         for (auto& [counts, times] : both.launches) {
             counted.launches.push_back(std::move(counts));
             timed.launches.push_back(times);
+        }
+    }
+    return all;
+}
+
+std::vector<cachesim::ProfiledSeries> profile(const std::vector<LaunchSource>& sources,
+                                              const std::vector<cachesim::Gpu>& gpus, bool timed, Observer& observer) {
+    std::vector<cachesim::ProfiledSeries> all;
+    for (ProfiledLaunches& made : replay_with<ProfiledLaunches>(
+             sources, gpus, observer,
+             [&](const cachesim::Gpu&gpu, const std::vector<traces::Region>&regions, std::uint32_t sample) {
+                 return ProfilingReplay(gpu, regions, sample, timed && cachesim::no_time_note(gpu).empty());
+             })) {
+        cachesim::ProfiledSeries& series = all.emplace_back();
+        static_cast<cachesim::Origin&>(series) = made;
+        for (ProfiledLaunch& launch : made.launches) {
+            series.launches.push_back(std::move(launch.counted));
+            series.instructions.push_back(std::move(launch.instructions));
+            if (launch.time) series.times.push_back(*launch.time);
         }
     }
     return all;

@@ -6,6 +6,7 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
+#include "cachesim/report/profiler.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
 #include "tools/jobs/launch_source.hpp"
@@ -26,6 +27,10 @@ struct Predicted {
     std::vector<cachesim::Series> traffic;
 };
 Predicted predict(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&, Observer&);
+
+/// With what a profiler's metrics need; `timed`: in time, too.
+std::vector<cachesim::ProfiledSeries> profile(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,
+                                              bool timed, Observer&);
 
 /// In time alone.
 std::vector<cachesim::TimedSeries> replay_timed(const std::vector<LaunchSource>&, const std::vector<cachesim::Gpu>&,

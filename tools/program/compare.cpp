@@ -83,7 +83,7 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
         Progress progress("compare");
         std::vector<std::string> remarks;
         if (o->equivalent) remarks = cache_equivalents(job.launches, gpus, o->report.baseline, progress);
-        o->report.publish(run(job, gpus, progress, outputs), remarks);
+        o->report.run_and_publish(job, gpus, progress, remarks);
     };
 }
 

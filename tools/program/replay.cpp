@@ -24,7 +24,7 @@ Action plan(const std::shared_ptr<const ReplayArguments>& o) {
         check_outputs(outputs, warn);
         const auto limit = o->threads.apply();
         Progress progress("replay");
-        o->report.publish(run(job, gpus, progress, outputs));
+        o->report.run_and_publish(job, gpus, progress);
     };
 }
 
@@ -39,7 +39,7 @@ void add_replay(Program& program) {
     command->examples({"raycache replay mj.rct --gpu gtx-980-ti",
                        "raycache replay mj.rct --gpu gtx-980-ti --gpu h100 --by bounce --json",
                        "raycache replay mj.rct --gpu rtx-3070 --set l1.ways=128 --timed",
-                       "raycache replay mj.rct --gpu rtx-3070 --counters ncu",
+                       "raycache replay mj.rct --gpu rtx-3070 --counters ncu --timed",
                        "raycache replay mj.rct --gpu rtx-3070 --counters ncu --by bounce --csv"});
     command->plan([o] { return plan(o); });
 }

@@ -48,7 +48,7 @@ void ReportOptions::add(Command& command, bool with_baseline) {
     gpus.add_changes(command);
     command.group("Report");
     command.add_flag("--timed", timed, "predict cycles, too: latencies, queues and bandwidths beside order")
-        ->excludes({"--by", "--counters"});
+        ->excludes({"--by"});
     command
         .add_option("--by", by,
                     "one row per: none, bounce (path vertex), ray (camera, bounce, shadow), object (node, triangle, "
@@ -65,7 +65,8 @@ void ReportOptions::add(Command& command, bool with_baseline) {
     command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
     command
         .add_option("--counters", counters,
-                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format")
+                    "ncu: instead of the table, totals under the names of Nsight Compute's metrics, in any format "
+                    "(docs/counters.md); with --timed also rates and shares of peaks")
         ->choices("set of counters", {"ncu"});
     command.add_option("--save", save, "also write PREFIX.txt, PREFIX.json and PREFIX.csv")->type_name("PREFIX");
     command.group("");
@@ -87,7 +88,6 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) con
 
 void ReportOptions::check() const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them (--save PREFIX writes both)");
-    if (timed && !counters.empty()) throw UsageError("--timed with --counters; expected one of them");
     if (timed && by != "none")
         throw UsageError("--timed with --by; expected --timed alone: a launch's cycles have no parts");
     refuse_stdout("--save", save);
@@ -114,10 +114,15 @@ void ReportOptions::publish(const ReplayResult& result, const std::vector<std::s
     }
     cachesim::Report report = cachesim::make_report(result.series, baseline_of(result.series, baseline), parse_by(by));
     report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
-    if (counters.empty())
-        print_and_save(report, result.subject, *this);
-    else
-        print_and_save(cachesim::ProfilerReport{report}, result.subject, *this);
+    print_and_save(report, result.subject, *this);
+}
+
+void ReportOptions::run_and_publish(const ReplayJob& job, const std::vector<cachesim::Gpu>& loaded, Observer& observer,
+                                    const std::vector<std::string>& remarks) const {
+    if (counters.empty()) return publish(run(job, loaded, observer, outputs()), remarks);
+    const ProfileResult result = profile(job, loaded, observer, outputs());
+    print_and_save(cachesim::make_profile(result.series, baseline_of(result.series, baseline), parse_by(by)),
+                   result.subject, *this);
 }
 
 }  // namespace raycache::tools

@@ -29,12 +29,14 @@ struct ReportOptions {
 
     /// What is asked of the GPUs; the launches are the command's.
     ReplayJob job() const;
-    /// Makes the report of that job's result, prints it in the chosen format, and saves all formats where asked.
-    /// `remarks` come behind its notes.
-    void publish(const ReplayResult&, const std::vector<std::string>& remarks = {}) const;
+    /// Runs that job, makes the report of its result, prints it in the chosen format, and saves all formats where
+    /// asked. `remarks` come behind its notes.
+    void run_and_publish(const ReplayJob&, const std::vector<cachesim::Gpu>&, Observer&,
+                         const std::vector<std::string>& remarks = {}) const;
 
 private:
     void check() const;
+    void publish(const ReplayResult&, const std::vector<std::string>& remarks) const;
 };
 
 }  // namespace raycache::tools
