@@ -11,6 +11,7 @@ void add_info(Program&);
 void add_verify(Program&);
 void add_replay(Program&);
 void add_compare(Program&);
+void add_counters(Program&);
 void add_explain(Program&);
 void add_curve(Program&);
 void add_quality(Program&);

@@ -133,6 +133,7 @@ Program::Program() {
     add_verify(*this);
     add_replay(*this);
     add_compare(*this);
+    add_counters(*this);
     add_explain(*this);
     add_curve(*this);
     add_quality(*this);
