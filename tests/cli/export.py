@@ -2,7 +2,7 @@
 """raycache export: what a cache is asked, for other tools."""
 import csv
 
-from support import PICTURE, SCENE, ProgramTest, main
+from support import GPU_FILE, PICTURE, SCENE, ProgramTest, main
 
 H100 = ["--gpu", "h100"]
 
@@ -72,6 +72,49 @@ policy = "fifo"
                       "l3.u64")
         self.assertEqual(self.path("l3.u64").stat().st_size, 8 * missing)
         self.assertGreater(missing, 0)
+
+    def test_a_request_file_of_dram_has_every_sector_of_the_timed_replay(self):
+        trace = self.path("trace.rct")
+        self.succeeds("capture", *SCENE, *PICTURE, "--spp", "64", "--bounces", "1", "--trace-samples", "1", "-o", trace)
+        timed = self.succeeds("replay", trace, *H100, "--timed", "--json").json["rows"][0]
+        export = ["export", trace, *H100, "--level", "dram", "--format"]
+        files = {form: self.succeeds(*export, form, "-o", "-").text.splitlines() for form in ("ramulator", "ramulator2", "dramsim3")}
+        lines = [line.split() for line in files["dramsim3"]]
+        self.assertEqual(len(lines), timed["dram_sectors"])
+        cycles = [int(cycle) for _, _, cycle in lines]
+        self.assertEqual(cycles, sorted(cycles))
+        self.assertLess(cycles[-1], timed["cycles"])
+        self.assertEqual({what for _, what, _ in lines}, {"READ"})
+        self.assertEqual(files["ramulator"], [f"{address} R" for address, _, _ in lines])
+        self.assertEqual(files["ramulator2"], [f"LD {address}" for address, _, _ in lines])
+        half = self.succeeds(*export, "dramsim3", "--cycle-mhz", "877.5", "--launch", "0", "-o", "-").text.splitlines()
+        self.assertEqual([int(line.split()[2]) for line in half], [cycle // 2 for cycle in cycles])  # of 1755 MHz
+        self.assertEqual({line.split()[0] for line in half}, {address for address, _, _ in lines})
+
+    def test_stores_of_a_wavefront_are_writes_of_dram_and_sorts_are_left_out_aloud(self):
+        trace = self.path("wave.rct")
+        self.succeeds("capture", *SCENE, *PICTURE, "--spp", "64", "--trace-samples", "1", "--execution", "wavefront", "-o", trace)
+        row = self.succeeds("replay", trace, *H100, "--timed", "--json").json["rows"][0]
+        lines = self.succeeds("export", trace, *H100, "--level", "dram", "--format", "ramulator", "-o", "-").text.splitlines()
+        self.assertEqual(len(lines), row["dram_sectors"])
+        self.assertGreaterEqual(sum(line.endswith(" W") for line in lines), row["traffic"]["totals"]["written_sectors"])
+        self.succeeds("capture", *SCENE, *PICTURE, "--spp", "64", "--trace-samples", "1", "--execution", "wavefront",
+                      "--order", "morton", "-o", trace)
+        row = self.succeeds("replay", trace, *H100, "--timed", "--json").json["rows"][0]
+        done = self.warns("export", trace, *H100, "--level", "dram", "--format", "dramsim3", "-o", "s.trc")
+        self.assertIn(f"{row['traffic']['totals']['sort_sectors']} sectors that sorts move are left out", done.stderr)
+
+    def test_a_request_file_of_dram_needs_a_level_a_format_and_times_that_fit(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        dram = ["export", trace, "-o", "x", "--level", "dram", "--format"]
+        self.refuses(2, *dram, "csv", *H100, mentions=["--format csv", "dram", "dramsim3"])
+        self.refuses(2, "export", trace, "-o", "x", *H100, "--sm", "0", "--format", "dramsim3", mentions=["--level dram"])
+        self.refuses(2, *dram, "dramsim3", *H100, "--sm", "0", mentions=["--sm", "dram"])
+        self.refuses(2, *dram, "ramulator", *H100, "--cycle-mhz", "1000", mentions=["--cycle-mhz", "dramsim3"])
+        self.refuses(2, "export", trace, "-o", "x", *H100, "--sm", "0", "--format", "csv", "--cycle-mhz", "9", mentions=["--cycle-mhz"])
+        self.refuses(2, *dram, "dramsim3", "--gpu", "xeon-8380", mentions=["xeon-8380", "time"])
+        self.path("tiny.toml").write_text(GPU_FILE)
+        self.refuses(1, *dram, "dramsim3", "--gpu", "tiny.toml", mentions=["tiny.toml", "timing"])
 
     def test_dinero_and_u64_files_hold_the_same_sectors_and_nothing_is_printed(self):
         trace = self.capture()

@@ -1,8 +1,12 @@
 // raycache export: a trace, or what a cache is asked during its replay, for other tools.
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "cachesim/export/dram_stream.hpp"
 #include "cachesim/export/sector_stream.hpp"
 #include "cachesim/replay/replay.hpp"
+#include "cachesim/replay/timed/timed_replay.hpp"
 #include "tools/jobs/export_accel_sim.hpp"
 #include "tools/jobs/launch_source.hpp"
 #include "tools/jobs/outputs.hpp"
@@ -22,6 +26,7 @@ struct ExportArguments {
     std::string trace, format, level = "l1", output;
     GpuOptions gpu;
     std::optional<std::uint32_t> sm, l1, launch;
+    std::optional<double> cycle_mhz;
     traces::TracegSettings traceg;
 };
 
@@ -31,9 +36,16 @@ const cachesim::SectorFormat* find_sector_format(const std::string& name) {
     return nullptr;
 }
 
+const cachesim::DramFormat* find_dram_format(const std::string& name) {
+    for (const cachesim::DramFormat& format : cachesim::dram_formats())
+        if (format.name == name) return &format;
+    return nullptr;
+}
+
 std::vector<std::string> format_names() {
     std::vector<std::string> names;
     for (const cachesim::SectorFormat& format : cachesim::sector_formats()) names.push_back(format.name);
+    for (const cachesim::DramFormat& format : cachesim::dram_formats()) names.push_back(format.name);
     names.emplace_back("accel-sim");
     return names;
 }
@@ -64,6 +76,7 @@ cachesim::SectorStream::Choice choose_cache(const ExportArguments& o, const cach
     if (level == levels)
         throw UsageError(
             fmt::format("--level '{}'; expected one of: l1, l2{} for {}", o.level, levels > 2 ? ", l3" : "", gpu.name));
+    if (o.cycle_mhz) throw UsageError(fmt::format("--cycle-mhz with --level {}; expected --level dram", o.level));
     if (level + 1 == levels) {
         if (o.sm || o.l1)
             throw UsageError(fmt::format("--sm or --l1 with --level {}; expected neither: all SMs of {} share it",
@@ -110,6 +123,54 @@ void export_sectors(const ExportArguments& o, const cachesim::Gpu& gpu, const ca
     warn_of_others(o, header);
 }
 
+/// What DRAM is asked for, kernel after kernel of a launch.
+void export_dram(const ExportArguments& o, const cachesim::Gpu& gpu, const cachesim::DramFormat& format) {
+    const traces::Reader reader(o.trace);
+    const traces::Header& header = reader.header();
+    const std::uint32_t launch = choose_launch(o, header);
+
+    check_outputs({o.output}, warn);
+    traces::OutputFile file(o.output);
+    cachesim::DramStream stream(format, o.cycle_mhz ? *o.cycle_mhz / gpu.timing->clock_mhz : 1,
+                                [&](std::string_view piece) { file.write(piece); });
+    cachesim::TimedReplay replay(gpu, header.regions, header.launches[launch]);
+    replay.observe(stream);
+    Progress progress("export");
+    const Stage stage(progress, "replay", header.warps_per_launch, "warps");
+    traces::read_launch(reader, launch, [&](traces::WarpTrace&& warp) {
+        if (warp.warp != 0 && warp.warp % header.warps_per_kernel() == 0) replay.end_kernel();
+        replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
+        stage.add(1, 1);
+    });
+    replay.finish();
+    stream.flush();
+    file.commit();
+    if (stream.sorted() > 0)
+        warn(fmt::format(
+            "{}: {} sectors that sorts move are left out of {} others: the trace does not say where they are "
+            "read and written",
+            o.trace, stream.sorted(), stream.reads() + stream.writes()));
+    warn_of_others(o, header);
+}
+
+Action plan_dram(const std::shared_ptr<const ExportArguments>& o, const cachesim::Gpu& gpu) {
+    if (o->sm || o->l1)
+        throw UsageError(
+            fmt::format("--sm or --l1 with --level dram; expected neither: all SMs of {} share it", gpu.name));
+    const cachesim::DramFormat* format = find_dram_format(o->format);
+    if (!format)
+        throw UsageError(
+            fmt::format("--format {} with --level dram; expected one of: ramulator, ramulator2, dramsim3", o->format));
+    if (o->cycle_mhz && format->name != "dramsim3")
+        throw UsageError(fmt::format("--cycle-mhz with --format {}; expected dramsim3: {} has no cycles", format->name,
+                                     format->name));
+    o->gpu.check_timed({gpu});
+    if (const std::string note = cachesim::no_time_note(gpu); !note.empty())
+        throw UsageError(
+            fmt::format("--level dram with --gpu {}; expected a GPU whose time is predicted: {}", gpu.name, note));
+    return [o, gpu, format] { export_dram(*o, gpu, *format); };
+}
+
 void export_instructions(const ExportArguments& o) {
     const traces::Reader reader(o.trace);
     refuse_wavefront(reader.header(), o.trace, "export");
@@ -120,9 +181,10 @@ void export_instructions(const ExportArguments& o) {
 
 Action plan(const std::shared_ptr<const ExportArguments>& o) {
     if (o->format == "accel-sim") {
-        if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->level != "l1")
+        if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->cycle_mhz || o->level != "l1")
             throw UsageError(
-                "--format accel-sim with --gpu, --set, --l1-kib, --l2-kib, --warps-per-sm, --level, --sm or --l1; "
+                "--format accel-sim with --gpu, --set, --l1-kib, --l2-kib, --warps-per-sm, --level, --cycle-mhz, --sm "
+                "or --l1; "
                 "expected none: it holds a whole launch");
         refuse_overwriting({o->trace}, accel_sim_files(o->output));
         return [o] { export_instructions(*o); };
@@ -131,7 +193,12 @@ Action plan(const std::shared_ptr<const ExportArguments>& o) {
         throw UsageError("--gpu is missing; expected a preset or FILE.toml (see 'raycache list gpus')");
     refuse_overwriting({o->trace}, {o->output});
     const cachesim::Gpu gpu = o->gpu.load_one({o->output}, "export");
+    if (o->level == "dram") return plan_dram(o, gpu);
     const cachesim::SectorFormat* format = find_sector_format(o->format);
+    if (!format)
+        throw UsageError(
+            fmt::format("--format {} with --level {}; expected --level dram: it holds what DRAM is asked for",
+                        o->format, o->level));
     const auto choice = choose_cache(*o, gpu, *format);
     return [o, gpu, format, choice] { export_sectors(*o, gpu, *format, choice); };
 }
@@ -145,7 +212,9 @@ void add_export(Program& program) {
     command->add_option("TRACE", o->trace, "trace file")->required();
     command
         ->add_option("--format", o->format,
-                     "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv, or accel-sim (warp instructions)")
+                     "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv; of --level dram ramulator, ramulator2, "
+                     "dramsim3; or "
+                     "accel-sim (warp instructions)")
         ->choices("format", format_names())
         ->required();
     command
@@ -159,10 +228,17 @@ void add_export(Program& program) {
     o->gpu.add_names(*command, "GPU preset or FILE.toml (see 'raycache list gpus')")->count(1);
     o->gpu.add_changes(*command);
     command->group("GPU");
-    command->add_option("--level", o->level, "l1, l2 or l3: of one SM, or the last, which all SMs share")
-        ->choices("level", {"l1", "l2", "l3"});
+    command
+        ->add_option("--level", o->level,
+                     "l1, l2 or l3: of one SM, or the last, which all SMs share; dram: below all, in time")
+        ->choices("level", {"l1", "l2", "l3", "dram"});
     command->add_option("--sm", o->sm, "the SM whose cache is meant, from 0");
     command->add_option("--l1", o->l1, "which of its L1s, where an SM has several");
+    command
+        ->add_option(
+            "--cycle-mhz", o->cycle_mhz,
+            "dramsim3: the clock whose cycles are written, that of the simulated DRAM. Default: that of the SMs")
+        ->range(1.0, 1e6);
     command->group("Accel-Sim");
     command->add_option("--warps-per-cta", o->traceg.warps_per_cta, "consecutive warps that form a CTA")
         ->range(std::uint64_t{1}, std::uint64_t{32});
@@ -177,6 +253,8 @@ void add_export(Program& program) {
         {"raycache export mj.rct --gpu h100 --sm 0 --format csv -o sm0.csv",
          "raycache export mj.rct --gpu gtx-980-ti --sm 3 --l1 0 --format dinero -o sm3.din",
          "raycache export mj.rct --gpu h100 --level l2 --format u64 -o l2.u64",
+         "raycache export mj.rct --gpu rtx-3070 --level dram --format dramsim3 --cycle-mhz 1750 -o mj.trc",
+         "raycache export mj.rct --gpu rtx-3070 --level dram --format ramulator2 -o mj.trace",
          "raycache export mj.rct --launch 1 --gpu h100 --set l1.ways=8 --sm 0 --format dinero -o - | less",
          "raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace",
          "raycache export mj.rct --format accel-sim -o mj.traceg.xz"});

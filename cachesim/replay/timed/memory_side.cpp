@@ -67,6 +67,7 @@ void MemorySide::request(const MissRequest& miss) {
 }
 
 void MemorySide::run_requests(Cycle begin, Cycle end) {
+    if (sink_) sink_->reached(begin);
     to_slices_.run(begin, end, [this](const Packet& packet, double arrived) { serve(packet, arrived); });
 }
 
@@ -140,7 +141,7 @@ Cycle MemorySide::look_up(const Packet& packet, Cycle time) {
         // Room is made before DRAM is asked: a line whose sectors are all on their way holds up the slice.
         std::uint32_t number = TimedCache::none;
         while ((number = slice.send_for(packet.id, s, packet.set, entry, time)) == TimedCache::none) wait();
-        const Cycle here = read_dram(packet, time);
+        const Cycle here = read_dram(packet, s, time);
         waiting_ += slice.set_arrival(number, here);
         if (s == packet.sector) arrival = here;
     }
@@ -156,8 +157,12 @@ std::size_t MemorySide::channel_of(const Packet& packet) const {
     return (packet.output + std::uint64_t{packet.set} * slice_count_) % channels;
 }
 
-Cycle MemorySide::read_dram(const Packet& packet, Cycle time) {
+Cycle MemorySide::read_dram(const Packet& packet, std::uint32_t sector, Cycle time) {
     ++dram_sectors_;
+    if (sink_) [[unlikely]]
+        sink_->read(rules_.ids.line(packet.id) * rules_.gpu.l1().line_bytes +
+                        std::uint64_t{sector} * rules_.gpu.l1().sector_bytes,
+                    time);
     const std::uint64_t line = dram_.has_rows() ? rules_.ids.line(packet.id) : 0;
     return dram_.read(channel_of(packet), line * rules_.gpu.l1().line_bytes, time);
 }

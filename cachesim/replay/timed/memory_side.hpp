@@ -19,6 +19,7 @@
 #include "cachesim/replay/timed/crossbar.hpp"
 #include "cachesim/replay/timed/cycle.hpp"
 #include "cachesim/replay/timed/dram.hpp"
+#include "cachesim/replay/timed/dram_sink.hpp"
 #include "cachesim/replay/timed/timed_cache.hpp"
 #include "cachesim/replay/timed/timed_rules.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
@@ -71,6 +72,8 @@ public:
 
     const LevelAnswers& answers() const { return answers_; }
     std::uint64_t dram_sectors() const { return dram_sectors_; }
+    /// The sink, or null, hears of every sector read from DRAM. It must outlive this object.
+    void observe(DramSink* sink) { sink_ = sink; }
     /// Cycles that registers for misses were taken, of all slices together.
     Cycle waiting() const { return waiting_; }
     double dram_cycles_per_sector() const { return dram_.cost(); }
@@ -89,7 +92,7 @@ private:
 
     void serve(const Packet&, double arrived);
     Cycle look_up(const Packet&, Cycle);
-    Cycle read_dram(const Packet&, Cycle);
+    Cycle read_dram(const Packet&, std::uint32_t sector, Cycle);
     void hold_up(std::uint32_t slice, Cycle until) {
         slice_free_[slice] = std::max(slice_free_[slice], static_cast<double>(until) + slice_cost_);
     }
@@ -111,6 +114,7 @@ private:
     LevelAnswers answers_;
     std::uint64_t dram_sectors_ = 0;
     Cycle waiting_ = 0;
+    DramSink* sink_ = nullptr;
 };
 
 }  // namespace raycache::cachesim

@@ -46,6 +46,11 @@ public:
 
     std::uint64_t sectors() const { return sectors_; }
 
+    /// From now on addresses of written sectors are kept, one for each that sectors() has but for those of sorts.
+    void keep_written() { keep_ = true; }
+    const std::vector<std::uint64_t>& written() const { return written_; }
+    void forget_written() { written_.clear(); }
+
 private:
     static bool streams(const traces::Region& r) { return traces::role_of(r.kind).access != traces::AccessType::read; }
 
@@ -59,7 +64,10 @@ private:
             for (std::uint64_t s = first; s <= last; ++s) touched_.push_back(s);
         }
         std::sort(touched_.begin(), touched_.end());
-        return static_cast<std::uint64_t>(std::unique(touched_.begin(), touched_.end()) - touched_.begin());
+        touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+        if (keep_)
+            for (const std::uint64_t sector : touched_) written_.push_back(sector * sector_bytes_);
+        return touched_.size();
     }
 
     const std::vector<traces::Region>& regions_;
@@ -67,6 +75,8 @@ private:
     bool any_ = false;
     std::uint64_t sectors_ = 0;
     std::vector<std::uint64_t> touched_;
+    bool keep_ = false;
+    std::vector<std::uint64_t> written_;  ///< addresses
 };
 
 }  // namespace raycache::cachesim

@@ -40,6 +40,7 @@ struct TimedReplay::Impl {
     Cycle here() const { return placed == 0 ? launched : now + rules.timing.launch_cycles; }
 
     void place_cta();
+    void tell_of_streams(Cycle);
     void run_window();
     void run_all() {
         if (!cta.empty()) place_cta();
@@ -78,6 +79,7 @@ struct TimedReplay::Impl {
     const TimedRules rules;
     MemorySide memory;
     StreamedTraffic streamed;
+    DramSink* sink = nullptr;
     std::deque<TimedSm> sms;
     Cycle now = 0;
     Cycle began = 0;     ///< the kernel
@@ -162,7 +164,7 @@ void TimedReplay::Impl::place_cta() {
         while (free.empty()) run_window();
     turn_to(of_cta, here());
     has_warps = true;
-    streamed_placed = streamed.sectors();
+    tell_of_streams(placed < at_first ? began + placed / sms.size() : now);
     if (!has_access) {
         for (const WarpPointer& warp : cta)
             for (const traces::Record& record : warp->records)
@@ -178,6 +180,15 @@ void TimedReplay::Impl::place_cta() {
         ++placed;
     }
     cta.clear();
+}
+
+/// What the CTA that is placed in this cycle writes and sorts.
+void TimedReplay::Impl::tell_of_streams(Cycle time) {
+    const std::uint64_t before = std::exchange(streamed_placed, streamed.sectors());
+    if (!sink) return;
+    for (const std::uint64_t address : streamed.written()) sink->write(address, time);
+    if (const std::uint64_t moved = streamed_placed - before - streamed.written().size()) sink->moved(moved);
+    streamed.forget_written();
 }
 
 void TimedReplay::Impl::run_window() {
@@ -215,6 +226,12 @@ TimedReplay::TimedReplay(const Gpu& gpu, const std::vector<traces::Region>& regi
     : impl_(std::make_unique<Impl>(gpu, regions, sample, ideal, path)) {}
 TimedReplay::~TimedReplay() = default;
 TimedReplay::TimedReplay(TimedReplay&&) noexcept = default;
+
+void TimedReplay::observe(DramSink& sink) {
+    impl_->sink = &sink;
+    impl_->memory.observe(&sink);
+    impl_->streamed.keep_written();
+}
 
 void TimedReplay::push(std::shared_ptr<const traces::WarpTrace> warp) {
     Impl& i = *impl_;

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "cachesim/gpus/gpu.hpp"
+#include "cachesim/replay/timed/dram_sink.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
 #include "cachesim/replay/timed/timed_statistics.hpp"
 #include "traces/header.hpp"
@@ -36,6 +37,10 @@ public:
                 PortPath = PortPath::fast);
     ~TimedReplay();
     TimedReplay(TimedReplay&&) noexcept;
+
+    /// The sink hears of all that DRAM is asked for, and changes no count. Call before the first push; it must outlive
+    /// the replay.
+    void observe(DramSink&);
 
     /// Hands over the next warp of the launch, in warp order.
     void push(std::shared_ptr<const traces::WarpTrace>);
