@@ -32,9 +32,10 @@ class Counters(ProgramTest):
         self.trace = self.path("trace.rct")
         if not self.MADE:
             self.MADE["trace"] = self.capture().read_bytes()
-            probe = self.write(lines([["ID", READ, RATE, SECTORS], ["", "byte", "%", "sector"], ["0", "1", "1", "1"], ["1", "1", "1", "1"]]))
-            self.MADE["launches"] = [{name: metric["values"][i]["modelled"] for name, metric in self.metrics(probe).items()}
-                                     for i in (0, 1)]
+            ones = [[str(launch), "1", "1", "1"] for launch in (0, 1)]
+            probe = self.write(lines([["ID", READ, RATE, SECTORS], ["", "byte", "%", "sector"], *ones]))
+            metrics = self.metrics(probe).items()
+            self.MADE["launches"] = [{name: metric["values"][i]["modelled"] for name, metric in metrics} for i in (0, 1)]
         self.trace.write_bytes(self.MADE["trace"])
         self.first, self.second = self.MADE["launches"]
 

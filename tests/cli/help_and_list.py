@@ -4,7 +4,8 @@ import re
 
 from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
-SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "counters", "explain", "export", "import", "list"]
+SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "counters", "explain", "export",
+               "import", "list"]
 TOPICS = ["strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes", "figures", "timed-figures"]
 
 
