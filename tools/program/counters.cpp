@@ -80,6 +80,11 @@ Action plan(const std::shared_ptr<const CountersArguments>& o) {
             fmt::format("--gpu {}; expected a GPU of two levels of caches, found {}: Nsight Compute has no name "
                         "for one between L1 and the shared L2",
                         gpus.front().name, gpus.front().levels.size()));
+    if (o->timed && gpus.front().traversal == cachesim::Traversal::rt_unit)
+        throw UsageError(fmt::format(
+            "--timed with --gpu {}; expected traversal = software, found rt_unit: Nsight Compute's counters "
+            "leave out what RT units read",
+            gpus.front().name));
     return [o, job, gpus] { compare(*o, job, gpus); };
 }
 

@@ -83,6 +83,12 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) con
                 fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}: Nsight "
                             "Compute has no name for one between L1 and the shared L2",
                             gpu.name, gpu.levels.size()));
+    for (const cachesim::Gpu& gpu : loaded)
+        if (timed && !counters.empty() && gpu.traversal == cachesim::Traversal::rt_unit)
+            throw UsageError(fmt::format(
+                "--counters ncu --timed with --gpu {}; expected traversal = software, found rt_unit: Nsight "
+                "Compute's counters leave out what RT units read",
+                gpu.name));
     return loaded;
 }
 
