@@ -11,8 +11,8 @@ import unittest
 from support import GPU, LAUNCHES, RAYCACHE, SCENE, ProgramTest, main
 
 BUILD = pathlib.Path(RAYCACHE).resolve().parent
-COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "quality", "sweep", "export", "import",
-            "samples", "list"]
+COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "quality", "sweep", "curve", "counters",
+            "export", "import", "samples", "list"]
 
 
 @unittest.skipUnless((BUILD / "cmake_install.cmake").exists() and shutil.which("cmake"),
@@ -125,6 +125,7 @@ class Install(ProgramTest):
         self.assertIn("</html>", self.path("page.html").read_text("utf-8"))
         self.assertIn("usage", self.installed("raycache-plot-sweep", "--help"))
         self.assertIn("usage", self.installed("raycache-plot-curve", "--help"))
+        self.assertIn("usage", self.installed("raycache-plot-counters", "--help"))
 
     def test_python_imports_the_reader_of_traces(self):
         trace = self.capture()

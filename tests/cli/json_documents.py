@@ -26,6 +26,7 @@ class JsonDocuments(ProgramTest):
         """Command -> document, of every command and kind of report that the program prints as JSON."""
         base = self.capture("base.rct", "--strategy", "cranley-patterson")
         other = self.capture("other.rct", "--strategy", "micro-jitter")
+        self.path("profile.csv").write_text('"ID","dram__bytes_read.sum"\n"","Kbyte"\n"0","1,024.5"\n')
         self.path("gpu.toml").write_text((ROOT / "cachesim/gpus/v100.toml").read_text())
         wave = "cranley-patterson,cranley-patterson+wavefront,cranley-patterson+morton"
         commands = [
@@ -35,7 +36,7 @@ class JsonDocuments(ProgramTest):
             ["replay", base, *GPU, "--counters", "ncu"], ["compare", base, other, *GPU, "--gpu", "h100"],
             [*FUSED, "--strategy", wave, *GPU, "--by", "object"], [*FUSED, "--strategy", wave, "--gpu", "v100", "--timed"],
             [*FUSED, "--strategy", wave, *GPU, "--counters", "ncu"],
-            ["curve", base, other, *GPU, "--level", "l1"],
+            ["curve", base, other, *GPU, "--level", "l1"], ["counters", base, *GPU, "--against", "profile.csv"],
             ["explain", base, other, *GPU, "--by", "ray"], ["explain", base, other, "--gpu", "xeon-8380", "--by", "bounce"],
             ["quality", *QUALITY, *GPU, "--pairs", "--repeats", "2", "--strategy", "cranley-patterson,micro-jitter"],
             ["sweep", *QUALITY, *GPU, "--mu", "0.5,1"], ["samples"], ["samples", "--strategy", "coherent"],

@@ -10,6 +10,7 @@ endfunction()
 link_command(raycache-report report.py)
 link_command(raycache-plot-sweep plot_sweep)
 link_command(raycache-plot-curve plot_curve)
+link_command(raycache-plot-counters plot_counters)
 
 # Where bash and zsh look for the completion of commands under this prefix.
 foreach(place IN ITEMS "bash|bash-completion/completions/raycache" "zsh|zsh/site-functions/_raycache")
