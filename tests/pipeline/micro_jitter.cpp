@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "measure.hpp"
 
@@ -49,10 +48,14 @@ double mean(const std::vector<Traffic>& traffic, double Traffic::*what) {
 void micro_jitter_misses_less(const std::string& name, std::uint64_t trace_samples) {
     const tracer::PreparedScene* scene = find_scene(name);
     if (scene == nullptr) return;
-    for (const auto& [sequence, spp] : {std::pair("sobol", 64U), std::pair("halton", 1024U)}) {
-        INFO(name << ", " << sequence << ", N = " << spp);
+    struct Set {
+        const char* sequence;
+        std::uint64_t spp;
+    };
+    for (const Set& set : {Set{"sobol", 64}, Set{"halton", 1024}}) {
+        INFO(name << ", " << set.sequence << ", N = " << set.spp);
         const auto traffic = [&](const char* strategy) {
-            return measure(*scene, capture_settings(strategy, sequence, spp, trace_samples));
+            return measure(*scene, capture_settings(strategy, set.sequence, set.spp, trace_samples));
         };
         const auto rotated = traffic("cranley-patterson"), jittered = traffic("micro-jitter");
         CHECK(lower(jittered, rotated, &Traffic::l2_bytes));
