@@ -35,6 +35,8 @@ public:
 
     /// By IssuedAccess::number.
     const Access& operator[](std::uint32_t access) const { return accesses_[access]; }
+    /// Of its active lanes, lowest first.
+    const std::uint32_t* elements(const Access& access) const { return &elements_[access.first]; }
 
     /// Calls use(lane, element, sectors) for each active lane, lowest first, whose object lies in some of the sectors
     /// that the look-up asked for, until one call returns false.
@@ -43,7 +45,7 @@ public:
         const Access& access = accesses_[request.access];
         const Place& place = places_[access.region];
         const std::uint64_t line_end = request.address + line_bytes_ - 1;
-        const std::uint32_t* element = &elements_[access.first];
+        const std::uint32_t* element = elements(access);
         for (std::uint32_t left = access.mask; left != 0; left &= left - 1, ++element) {
             const std::uint64_t begin = place.base + std::uint64_t{*element} * place.stride;
             const std::uint64_t end = begin + place.size - 1;

@@ -58,19 +58,6 @@ ExportedDram export_dram(const Gpu& gpu, const Launch& launch, const std::string
     return made;
 }
 
-Gpu small_timed_gpu() {
-    Gpu gpu = timed_gpu();
-    gpu.sms = 3;
-    gpu.warps_per_sm = 8;
-    gpu.warps_per_cta = 2;
-    gpu.levels[0].ways = 4;
-    gpu.levels[1].sets = 2;
-    return gpu;
-}
-
-const std::vector<traces::Region> objects{region(ObjectKind::node, 0x200000, 64, 64, 3000),
-                                          region(ObjectKind::triangle, 0x800000, 48, 48, 2000)};
-
 }  // namespace
 
 TEST_CASE("every sector that a timed replay reads from DRAM is one request, and cycles ascend") {

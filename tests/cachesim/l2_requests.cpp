@@ -1,5 +1,5 @@
 // Requests to L2, against a count of single loads that is written anew here.
-#include "cachesim/replay/l2_requests.hpp"
+#include "cachesim/analysis/l2_requests.hpp"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -122,6 +122,20 @@ TEST_CASE("requests to L2 of random launches are those of single loads, where ca
             if (record.is_access()) lanes += record.lanes() * (4 - record.region - (record.region == 2));
     CHECK(both.instructions.all().lane_accesses == lanes);
     CHECK(both.instructions.all().warp_accesses == both.counted.all().loads);
+}
+
+TEST_CASE("lanes of loads are exact where one kind of object is read by different numbers of loads") {
+    Gpu gpu = small_gpu();
+    gpu.front_end.load_bytes = 16;
+    auto warp = std::make_shared<traces::WarpTrace>();
+    warp->records = {{0b1, 0, traces::RayType::camera, 0, 0}, {0b111, 1, traces::RayType::camera, 0, 0}};
+    warp->elements = {5, 1, 2, 3};
+    const Launch launch{
+        {region(ObjectKind::node, 0x7f5000000000, 64, 64, 300), region(ObjectKind::node, 0x7f5000200000, 32, 32, 300)},
+        {warp}};
+    const Both both = replay_with_requests(gpu, launch);
+    CHECK(both.instructions.all().warp_accesses == 4 + 2);
+    CHECK(both.instructions.all().lane_accesses == 4 * 1 + 2 * 3);
 }
 
 TEST_CASE("stores ask L2 by single stores, whatever L1 has") {

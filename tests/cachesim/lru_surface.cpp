@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cachesim/replay/replay.hpp"
+#include "look_up.hpp"
 #include "naive_cache.hpp"
 #include "oracle.hpp"
 #include "random_launch.hpp"
@@ -157,10 +158,7 @@ TEST_CASE("surfaces of one look-up, of equal and of distinct look-ups") {
     const auto curve_of = [&](const std::vector<std::uint32_t>& lines) {
         LruSurface surface(0, std::span(&geometry, 1));
         for (const std::uint32_t line : lines) {
-            ServedRequest request;
-            request.address = std::uint64_t{line} * geometry.line_bytes;
-            request.line = line;
-            request.asked = 0b0110;
+            const ServedRequest request = served_request(geometry, line, 0b0110);
             surface.served(0, std::span(&request, 1));
         }
         return surface.curves()[0];

@@ -8,6 +8,7 @@
 #include "cachesim/analysis/belady.hpp"
 #include "cachesim/cache/registry.hpp"
 #include "cachesim/replay/replay.hpp"
+#include "look_up.hpp"
 #include "oracle.hpp"
 #include "random_launch.hpp"
 
@@ -89,10 +90,7 @@ TEST_CASE("Belady's optimum has the fewest line misses that any choice of victim
         geometry.ways = ways;
         BeladyCaches belady(0);
         for (const std::uint32_t line : lines) {
-            ServedRequest request;
-            request.address = std::uint64_t{line} * geometry.line_bytes;
-            request.line = line;
-            request.asked = 1;
+            const ServedRequest request = served_request(geometry, line, 1);
             belady.served(0, std::span(&request, 1));
         }
         const PolicyCounts counts = belady.counts(geometry);

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <optional>
 
@@ -12,8 +12,9 @@
 #include "cachesim/cache/registry.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "tools/jobs/costs.hpp"
-#include "tools/jobs/replay_launches.hpp"
+#include "tools/jobs/replay_with.hpp"
 #include "traces/error.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -29,7 +30,7 @@ std::vector<std::size_t> levels_of(const CurveJob& job, const cachesim::Gpu& gpu
 std::vector<cachesim::CacheGeometry> rows_of(const CurveJob& job, const cachesim::CacheGeometry& own) {
     if (job.rate < 1) {
         std::vector<cachesim::CacheGeometry> whole{cachesim::fully_associative(own)};
-        whole.front().ways = own.slices * own.sets * own.ways;
+        whole.front().ways = own.lines();
         return whole;
     }
     std::vector<cachesim::CacheGeometry> rows{own};
@@ -42,7 +43,7 @@ std::vector<cachesim::CacheGeometry> rows_of(const CurveJob& job, const cachesim
 /// Of the caches with other policies: `sizes`, or a few around the GPU's own.
 std::vector<std::uint64_t> ways_of_policies(const CurveJob& job, const cachesim::CacheGeometry& own) {
     std::vector<std::uint64_t> ways;
-    for (const std::uint64_t size : job.sizes) ways.push_back(size / (own.slices * own.sets * own.line_bytes));
+    for (const std::uint64_t size : job.sizes) ways.push_back(size / own.way_bytes());
     if (ways.empty())
         for (const unsigned quarters : {1, 2, 4, 8, 16})
             if (own.ways * quarters % 4 == 0) ways.push_back(own.ways * quarters / 4);
@@ -113,37 +114,50 @@ struct LaunchCurves {
     std::uint64_t memory_bytes = 0;
 };
 
-LaunchCurves curves_of(const LaunchSource& source, std::uint32_t launch, const CurveJob& job, const cachesim::Gpu& gpu,
-                       const Stage& stage) {
-    const traces::Header& header = *source.header;
-    std::vector<std::unique_ptr<LevelListeners>> listeners;
-    cachesim::Replay replay(gpu, header.regions, header.launches[launch]);
-    const auto levels = levels_of(job, gpu);
-    for (const std::size_t level : levels)
-        listeners.push_back(std::make_unique<LevelListeners>(job, gpu, header.regions, level, replay));
-    source.deliver(launch, [&](traces::WarpTrace&& warp) {
-        const std::uint64_t rays = count_rays(warp);
-        replay.push(std::make_shared<const traces::WarpTrace>(std::move(warp)));
-        stage.add(1, rays);
-    });
-    const cachesim::Counters all = replay.finish().all();
-    LaunchCurves result;
-    result.rays = static_cast<double>(all.rays);
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        const cachesim::LruSurface& surface = listeners[l]->surface();
-        if (job.rate < 1 && surface.lines() < fewest_followed)
-            throw UsageError(
-                fmt::format("--sampled {}: expected a sample of at least {} lines, found {} in launch {}; "
-                            "raise it, or leave it out: the exact curve of so few lines is quick",
-                            job.rate, fewest_followed, surface.lines(), launch));
-        result.curves.push_back(surface.curves());
-        result.policies.push_back(listeners[l]->policies(job));
-        result.asked.push_back(static_cast<double>(levels[l] == 0 ? all.requests : all.levels[levels[l]].sectors));
-        result.look_ups.push_back(surface.look_ups());
-        result.memory_bytes += surface.bytes();
+/// A replay of one launch, and its listeners.
+class CurveReplay {
+public:
+    CurveReplay(const CurveJob& job, const cachesim::Gpu& gpu, const std::vector<traces::Region>& regions,
+                std::uint32_t sample)
+        : job_(job), levels_(levels_of(job, gpu)), sample_(sample), replay_(gpu, regions, sample) {
+        for (const std::size_t level : levels_)
+            listeners_.push_back(std::make_unique<LevelListeners>(job, gpu, regions, level, replay_));
     }
-    return result;
-}
+
+    void push(const std::shared_ptr<const traces::WarpTrace>& warp) { replay_.push(warp); }
+    void end_kernel() { replay_.end_kernel(); }
+    LaunchCurves finish() {
+        const cachesim::Counters all = replay_.finish().all();
+        LaunchCurves result;
+        result.rays = static_cast<double>(all.rays);
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            const cachesim::LruSurface& surface = listeners_[l]->surface();
+            if (job_.rate < 1 && surface.lines() < fewest_followed)
+                throw UsageError(
+                    fmt::format("--sampled {}: expected a sample of at least {} lines, found {} of sample index {}; "
+                                "raise it, or leave it out: the exact curve of so few lines is quick",
+                                job_.rate, fewest_followed, surface.lines(), sample_));
+            result.curves.push_back(surface.curves());
+            result.policies.push_back(listeners_[l]->policies(job_));
+            result.asked.push_back(
+                static_cast<double>(levels_[l] == 0 ? all.requests : all.levels[levels_[l]].sectors));
+            result.look_ups.push_back(surface.look_ups());
+            result.memory_bytes += surface.bytes();
+        }
+        return result;
+    }
+
+private:
+    const CurveJob& job_;
+    std::vector<std::size_t> levels_;
+    std::uint32_t sample_;
+    cachesim::Replay replay_;
+    std::vector<std::unique_ptr<LevelListeners>> listeners_;  ///< by level; must not move
+};
+
+struct CurvedSeries : cachesim::Origin {
+    std::vector<LaunchCurves> launches;
+};
 
 }  // namespace
 
@@ -167,32 +181,28 @@ void CurveJob::check(const cachesim::Gpu& loaded) const {
     if (rate < 1) {
         if (!sets.empty() || !policies.empty())
             throw UsageError("sets or policies beside a sampled curve; expected neither: it is of full associativity");
-        for (std::size_t l = 0; l < loaded.levels.size(); ++l) {
-            const cachesim::CacheGeometry& own = loaded.levels[l];
-            const std::uint64_t lines = own.slices * own.sets * own.ways;
-            if (!levels.empty() && levels.front() != l) continue;
-            if (lines < cachesim::WaysCurve::fewest_sampled_lines)
+        for (const std::size_t l : levels_of(*this, loaded))
+            if (const std::uint64_t lines = loaded.levels[l].lines(); lines < cachesim::WaysCurve::fewest_sampled_lines)
                 throw UsageError(fmt::format(
                     "--sampled for {} of {}, of {} lines; expected a level of at least {}: "
                     "samples say nothing of smaller caches",
                     cachesim::level_name(l), loaded.name, lines, cachesim::WaysCurve::fewest_sampled_lines));
-        }
     }
     if (sizes.empty()) return;
     if (levels.size() != 1) throw UsageError("sizes of all levels; expected those of one, such as --level l1");
     const cachesim::CacheGeometry& own = loaded.levels[levels.front()];
-    const std::uint64_t way = rate < 1 ? own.line_bytes : own.slices * own.sets * own.line_bytes;
+    const std::uint64_t way = rate < 1 ? own.line_bytes : own.way_bytes();
     for (const std::uint64_t size : sizes) {
         if (rate < 1 && size / way < cachesim::WaysCurve::fewest_sampled_lines)
             throw UsageError(fmt::format("--sizes {} bytes: expected at least {} lines beside --sampled", size,
                                          cachesim::WaysCurve::fewest_sampled_lines));
         if (size % way == 0) continue;
         const std::uint64_t below = size / way * way;
-        throw UsageError(fmt::format(
-            "--sizes {} bytes: expected a whole number of ways of {} of the {} of {}; the nearest {}", size,
-            cachesim::short_size(way), cachesim::level_name(levels.front()), loaded.name,
-            below == 0 ? "is " + cachesim::short_size(way)
-                       : fmt::format("are {} and {}", cachesim::short_size(below), cachesim::short_size(below + way))));
+        throw UsageError(
+            fmt::format("--sizes {} bytes: expected a whole number of ways of {} of the {} of {}; the nearest {}", size,
+                        size_text(way), cachesim::level_name(levels.front()), loaded.name,
+                        below == 0 ? "is " + size_text(way)
+                                   : fmt::format("are {} and {}", size_text(below), size_text(below + way))));
     }
 }
 
@@ -205,32 +215,16 @@ CurveResult run(const CurveJob& job, const cachesim::Gpu& gpu, Observer& observe
     }
     const Launches launches(job.launches, outputs, observer);
     const auto& sources = launches.sources();
+    for (std::size_t s = 0; s < sources.size(); ++s) refuse_wavefront(*sources[s].header, launches.names()[s], "curve");
+    std::vector<CurvedSeries> found =
+        replay_with<CurvedSeries>(sources, {gpu}, observer,
+                                  [&](const cachesim::Gpu& of, const std::vector<traces::Region>& regions,
+                                      std::uint32_t sample) { return CurveReplay(job, of, regions, sample); });
     CurveResult result{{{gpu_json(gpu)}, launches.subject()}, {}};
-    std::vector<std::vector<LaunchCurves>> found(sources.size());
-    std::vector<std::pair<std::size_t, std::uint32_t>> tasks;
-    std::uint64_t warps = 0;
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-        const traces::Header& header = *sources[s].header;
-        refuse_wavefront(header, launches.names()[s], "curve");
-        found[s].resize(header.launches.size());
-        for (std::uint32_t launch = 0; launch < header.launches.size(); ++launch) tasks.emplace_back(s, launch);
-        warps += std::uint64_t{header.warps_per_launch} * header.launches.size();
-    }
-    {
-        const Stage stage(observer, "replay", warps, "rays");
-        // Each launch begins with cold caches, so launches are independent: one thread each.
-        tbb::parallel_for(
-            std::size_t{0}, tasks.size(),
-            [&](std::size_t task) {
-                const auto [s, launch] = tasks[task];
-                found[s][launch] = curves_of(sources[s], launch, job, gpu, stage);
-            },
-            tbb::simple_partitioner());
-    }
     const auto levels = levels_of(job, gpu);
     for (std::size_t s = 0; s < sources.size(); ++s) {
         cachesim::CurveSeries& series = result.series.emplace_back();
-        static_cast<cachesim::Origin&>(series) = origin_of(sources[s], gpu);
+        static_cast<cachesim::Origin&>(series) = found[s];
         series.samples = sources[s].header->launches;
         for (std::size_t l = 0; l < levels.size(); ++l) {
             cachesim::LevelCurve& level = series.levels.emplace_back();
@@ -239,7 +233,7 @@ CurveResult run(const CurveJob& job, const cachesim::Gpu& gpu, Observer& observe
                 level.rows.push_back({row, {}});
             for (const std::string& policy : job.policies)
                 level.policies.push_back({policy, ways_of_policies(job, gpu.levels[levels[l]]), {}});
-            for (LaunchCurves& launch : found[s]) {
+            for (LaunchCurves& launch : found[s].launches) {
                 level.rays.push_back(launch.rays);
                 level.asked.push_back(launch.asked[l]);
                 level.look_ups += launch.look_ups[l];
@@ -249,7 +243,7 @@ CurveResult run(const CurveJob& job, const cachesim::Gpu& gpu, Observer& observe
                     level.policies[i].launches.push_back(std::move(launch.policies[l][i]));
             }
         }
-        for (const LaunchCurves& launch : found[s])
+        for (const LaunchCurves& launch : found[s].launches)
             series.memory_bytes = std::max(series.memory_bytes, launch.memory_bytes);
     }
     return result;

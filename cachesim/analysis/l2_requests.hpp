@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "cachesim/analysis/access_log.hpp"
 #include "cachesim/frontend/load_counter.hpp"
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/replay/request_sink.hpp"
@@ -27,23 +28,26 @@ public:
     bool wants(std::size_t level, std::uint32_t /*sm*/) const override { return level == shared_; }
     void issued(std::span<const IssuedAccess>) override;
     void served(std::size_t level, std::span<const ServedRequest>) override;
+    void end_window() override { log_.clear(); }
 
     /// The launch that was listened to, in instructions: `requests` are those to the shared level, `warp_accesses` are
     /// load (or store) instructions and `lane_accesses` their active lanes. The rest is as it was counted.
     LaunchStatistics in_instructions(const LaunchStatistics& counted) const;
 
 private:
-    struct Access {
-        std::uint32_t mask = 0, region = 0;
-        std::array<std::uint32_t, traces::warp_lanes> elements{};
+    struct Instructions {
+        std::uint64_t requests = 0, lanes = 0;
     };
+    Instructions& of(traces::RayType ray, std::uint8_t bounce, traces::ObjectKind kind) {
+        return counts_[static_cast<unsigned>(ray)][bounce][static_cast<unsigned>(kind)];
+    }
 
     std::size_t shared_;
     LoadCounter loads_;
-    std::vector<Access> accesses_;  ///< of the window, by number
-    /// Requests by ray type, bounce and kind of object.
-    std::array<std::array<std::array<std::uint64_t, traces::object_kinds>, traces::max_bounce + 1>, traces::ray_types>
-        requests_{};
+    AccessLog log_;
+    std::vector<traces::ObjectKind> kinds_;  ///< by region
+    std::array<std::array<std::array<Instructions, traces::object_kinds>, traces::max_bounce + 1>, traces::ray_types>
+        counts_{};
 };
 
 }  // namespace raycache::cachesim
