@@ -19,17 +19,17 @@ int about_four(double value, int small) {
 }  // namespace
 
 std::string decimals(double value, int digits) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : undefined;
 }
 
 std::string figure(double value, int small) { return decimals(value, about_four(value, small)); }
 
 std::string with_interval(const std::optional<Estimate>& e) {
-    return e ? with_interval(e, about_four(e->mean, 3)) : "-";
+    return e ? with_interval(e, about_four(e->mean, 3)) : undefined;
 }
 
 std::string with_interval(const std::optional<Estimate>& e, int digits) {
-    return e ? decimals(e->mean, digits) + half_width_text(*e, digits) : "-";
+    return e ? decimals(e->mean, digits) + half_width_text(*e, digits) : undefined;
 }
 
 std::string half_width_text(const Estimate& e, int digits) {
@@ -43,11 +43,6 @@ std::string half_width_cell(const Estimate& e, int digits) {
 
 std::string paragraph(const std::string& text, std::size_t indent) {
     return break_lines(printable_line(text), text_width, indent) + '\n';
-}
-
-std::string undefined_legend(const std::string& tables) {
-    const bool any = tables.find(" - ") != std::string::npos || tables.find(" -\n") != std::string::npos;
-    return any ? "-: undefined, since it would be divided by nothing.\n" : "";
 }
 
 }  // namespace raycache::cachesim

@@ -9,7 +9,12 @@
 
 namespace raycache::cachesim {
 
-/// "-" for what is no number: a quotient of nothing.
+/// What a figure shows that is no number: a quotient of nothing.
+inline constexpr const char* undefined = "-";
+/// What a table that shows one says of it.
+inline constexpr const char* undefined_legend = "-: undefined, since it would be divided by nothing.\n";
+
+/// `undefined` for what is no number.
 std::string decimals(double value, int digits);
 
 /// About four digits: "1334", "201.3", "20.13", "2.013", "0.201"; "0.2013" with small = 4.
@@ -27,7 +32,7 @@ std::string half_width_cell(const Estimate&, int digits);
 /// A figure in a column of its own.
 template <class Figure>
 std::string figure_cell(const Figure& figure, const std::optional<Estimate>& value) {
-    if (!value) return "-";
+    if (!value) return undefined;
     if (!figure.interval && figure.digits == about_four_digits) return cachesim::figure(figure.scale * value->mean);
     if (!figure.interval) return decimals(figure.scale * value->mean, figure.digits);
     return figure.digits == about_four_digits ? with_interval(value) : with_interval(value, figure.digits);
@@ -35,8 +40,5 @@ std::string figure_cell(const Figure& figure, const std::optional<Estimate>& val
 
 /// A paragraph of lines of at most text_width columns, the second and later ones indented; ends in '\n'.
 std::string paragraph(const std::string& text, std::size_t indent = 0);
-
-/// A line that says what "-" means, if it is a cell of the tables in the text.
-std::string undefined_legend(const std::string& tables);
 
 }  // namespace raycache::cachesim

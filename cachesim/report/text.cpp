@@ -82,6 +82,16 @@ std::string cell(const Report& report, const Row& row, std::size_t i) {
     return figure_cell(figure, row.figures[i]);
 }
 
+/// In a column that all rows have: a GPU without an L3 has no figures of it.
+bool shows_undefined(const Report& report) {
+    const std::vector<std::size_t> columns = columns_of(report);
+    return std::any_of(report.rows.begin(), report.rows.end(), [&](const Row& row) {
+        return std::any_of(columns.begin(), columns.end(), [&](std::size_t i) {
+            return traffic_figures[i].presence == Presence::always && cell(report, row, i) == undefined;
+        });
+    });
+}
+
 std::string main_table(const Report& report, std::size_t width) {
     const std::vector<Column> subjects = identity_columns(report);
     std::vector<Column> figures;
@@ -189,7 +199,7 @@ std::string to_text(const Report& report, std::size_t width) {
     std::string text = main_table(report, width);
     text += legend(report);
     text += factor_table(report, width);
-    text += undefined_legend(text);
+    if (shows_undefined(report)) text += undefined_legend;
     if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';
     for (const std::string& note : report.notes) text += paragraph("note: " + note, 2);

@@ -60,6 +60,19 @@ public:
         if (figure.of == Of::total) return fmt::format("{}", figure.total(row.totals, row.caches));
         return figure.is_compared() ? against_base(row, row.figures[i]) : figure_cell(figure, row.figures[i]);
     }
+    /// Of a row that has a time, in a column that all have: of the others something else says why there is none.
+    bool shows_undefined() const {
+        const auto shows = [&](const TimedRow& row, std::size_t i) {
+            const TimedFigure& figure = timed_figures[i];
+            const bool has = figure.column && figure.presence == Presence::always &&
+                             !(figure.is_compared() && report_.baseline.empty());
+            return has && cell(row, i) == undefined;
+        };
+        for (const TimedRow& row : report_.rows)
+            for (std::size_t i = 0; row.has_time() && i < timed_figures.size(); ++i)
+                if (shows(row, i)) return true;
+        return false;
+    }
     std::string against_base(const TimedRow& row, const std::optional<Estimate>& ratio) const {
         return row.strategy == report_.baseline ? "1" : with_interval(ratio, 3);
     }
@@ -142,7 +155,7 @@ std::string to_text(const TimedReport& report, std::size_t width) {
         text += figures_table(report, tables, width, which) + '\n';
     text += paragraph(traversal_note(report) + '.') + legend(report);
     if (!report.traffic.rows.empty()) text += factor_table(report.traffic, width);
-    text += undefined_legend(text);
+    if (tables.shows_undefined()) text += undefined_legend;
     std::string verdicts;
     for (std::size_t i = 0; i < report.rows.size(); ++i)
         if (const auto found = verdict_of(report, i); found && !report.traffic.rows.empty())

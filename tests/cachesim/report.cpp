@@ -119,6 +119,15 @@ TEST_CASE("warps of pixel classes are compared with warps of tiles, warps of one
     CHECK(own.rows[1]["dram_bytes_ratio"]->mean == Approx(1));
 }
 
+TEST_CASE("a strategy without parameters beside one with several is not called undefined") {
+    auto all = two_strategies();
+    all.push_back(all[1]);
+    all[1].parameters = "K=1";
+    all[2].parameters = "K=2.5";
+    const std::string text = to_text(make_report(all, "rotation", GroupBy::none), any_width);
+    CHECK_THAT(text, Catch::Contains("rotation      -  ") && !Catch::Contains("undefined"));
+}
+
 TEST_CASE("one sample index gives no interval and says so once") {
     auto all = two_strategies();
     for (Series& s : all) s.launches.resize(1);
