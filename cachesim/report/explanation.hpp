@@ -38,6 +38,7 @@ struct Explanation {
     std::string traversal = "software";  ///< of those replays: traversal_name() of the GPU
     /// Where the launches are blocks of windows: the last cache is full if it is for both; speed_ups are as wide.
     std::optional<WindowSample> windows{};
+    std::vector<std::string> cache_equivalents{};  ///< where asked for: to_sentence() of an Equivalent each
 
     double widening() const { return windows ? windows->widening : 1; }
     /// Of `other` over `base`; none where a quotient has no value.

@@ -140,6 +140,7 @@ std::string to_json(const Explanation& e) {
     json["sentence"] = sentence(e);
     if (!e.speed_ups.empty()) json["time_sentence"] = sentence(e.speed_ups);
     if (!e.no_time.empty()) json["time_sentence"] = e.no_time + '.';
+    if (!e.cache_equivalents.empty()) json["cache_equivalents"] = e.cache_equivalents;
     return dump(json);
 }
 

@@ -272,6 +272,7 @@ std::string to_text(const Explanation& e, std::size_t width) {
         text += paragraph("note: " + compulsory_note(e.gpu) + '.', 2);
     if (e.windows) text += paragraph("note: " + window_note(*e.windows) + '.', 2);
     if (e.windows && !e.windows->last_cache_full) text += paragraph("note: " + unfilled_note(e.gpu) + '.', 2);
+    for (const std::string& found : e.cache_equivalents) text += paragraph(found + '.', 2);
     return text;
 }
 

@@ -110,6 +110,8 @@ class Curve(ProgramTest):
         self.assertEqual(self.succeeds(*explained, "--json").json["cache_equivalents"], [sentence])
         self.assertIn(sentence, " ".join(self.succeeds(*explained).text.split()))
         self.refuses(2, "compare", "--scene", *SCENE, "--gpu", "h100", "--cache-equivalent", mentions=["--exact"])
+        for option in (["--csv"], ["--counters", "ncu"]):  # these have no place for it
+            self.refuses(2, *compared, *option, mentions=["--cache-equivalent", option[0]])
 
     def test_a_sampled_curve_is_of_large_caches_alone(self):
         sampled = [*FUSED, "--gpu", "rtx-3070", "--strategy", "coherent", "--sampled"]

@@ -65,6 +65,13 @@ class RtUnits(ProgramTest):
                               "--strategy", "cranley-patterson,micro-jitter", *UNIT, "--json").json["notes"]
         self.assertTrue(any(note.startswith("predicted times: traversal: RT unit (assumed") for note in notes), notes)
 
+    def test_counters_of_a_profiler_with_times_are_refused_since_it_leaves_out_what_units_read(self):
+        trace = self.capture("trace.rct", "--bounces", "0")
+        self.path("profile.csv").write_text('"ID","dram__bytes_read.sum"\n"","byte"\n"0","1"\n"1","1"\n')
+        for command in (["replay", trace, "--counters", "ncu"], ["counters", trace, "--against", "profile.csv"]):
+            self.refuses(2, *command, *UNIT, "--timed", mentions=["rt_unit", "leave out what RT units read"])
+            self.succeeds(*command, *UNIT)
+
     def test_a_gpu_without_a_unit_refuses_it_and_so_do_values_out_of_range(self):
         trace = self.capture("trace.rct", "--bounces", "0")
         for gpu, change, words in (("v100", "traversal=rt_unit", "v100.toml with --set: traversal: expected a table [rt_unit]"),

@@ -99,7 +99,7 @@ void add_compare(Program& program) {
     add_spps(*command, o->spp, "sizes N of the sample set, separated by commas");
     o->threads.add(*command);
     o->report.add(*command, true);
-    add_cache_equivalent(*command, o->equivalent);
+    add_cache_equivalent(*command, o->equivalent, {"--counters", "--csv"});
     o->estimate.add(*command, "with --timed: of every speed-up");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

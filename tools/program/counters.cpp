@@ -75,16 +75,7 @@ Action plan(const std::shared_ptr<const CountersArguments>& o) {
     job.timed = o->timed;
     const std::vector<cachesim::Gpu> gpus{o->gpu.load_one({}, "counters")};
     if (o->timed) o->gpu.check_timed(gpus);
-    if (gpus.front().levels.size() != 2)
-        throw UsageError(
-            fmt::format("--gpu {}; expected a GPU of two levels of caches, found {}: Nsight Compute has no name "
-                        "for one between L1 and the shared L2",
-                        gpus.front().name, gpus.front().levels.size()));
-    if (o->timed && gpus.front().traversal == cachesim::Traversal::rt_unit)
-        throw UsageError(fmt::format(
-            "--timed with --gpu {}; expected traversal = software, found rt_unit: Nsight Compute's counters "
-            "leave out what RT units read",
-            gpus.front().name));
+    o->gpu.check_profiled(gpus, o->timed);
     return [o, job, gpus] { compare(*o, job, gpus); };
 }
 

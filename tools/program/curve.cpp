@@ -36,10 +36,8 @@ struct CurveArguments {
     ThreadOptions threads;
 };
 
-void publish(const CurveArguments& o, CurveResult result) {
+void publish(const CurveArguments& o, CurveResult result, const std::vector<std::uint64_t>& sizes) {
     const std::string baseline = baseline_of(result.series, o.baseline);
-    std::vector<std::uint64_t> sizes;
-    for (const std::string& size : o.sizes) sizes.push_back(read_size(size, "--sizes"));
     const cachesim::CurveReport report = cachesim::make_curve_report(std::move(result.series), baseline, sizes);
     print(o.json  ? o.json.document(cachesim::to_json(report), result.subject)
           : o.csv ? cachesim::to_csv(report)
@@ -76,7 +74,7 @@ Action plan(const std::shared_ptr<CurveArguments>& o, const Command* command) {
         check_outputs({}, warn);
         const auto limit = o->threads.apply();
         Progress progress("curve");
-        publish(*o, run(job, gpu, progress));
+        publish(*o, run(job, gpu, progress), job.sizes);
     };
 }
 

@@ -1,6 +1,10 @@
 // --cache-equivalent: what compare and explain also say of cache sizes.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tools/jobs/cache_equivalents.hpp"
 #include "tools/jobs/windows/estimate.hpp"
 #include "tools/program/command.hpp"
@@ -8,10 +12,13 @@
 
 namespace raycache::tools {
 
-inline void add_cache_equivalent(Command& command, bool& asked) {
-    command.add_flag("--cache-equivalent", asked,
-                     "also which size of L1, and how much more bandwidth, the baseline would need to do as well; of "
-                     "whole launches, which are replayed once more (raycache curve says more)");
+/// `without`: options whose results have no place for it.
+inline void add_cache_equivalent(Command& command, bool& asked, std::vector<std::string> without) {
+    command
+        .add_flag("--cache-equivalent", asked,
+                  "also which size of L1, and how much more bandwidth, the baseline would need to do as well; of whole "
+                  "launches, which are replayed once more (raycache curve says more)")
+        ->excludes(std::move(without));
 }
 
 /// Throws UsageError for windows.

@@ -1,7 +1,6 @@
 // raycache explain: why one trace is kinder to a GPU's caches than another.
 #include <fmt/format.h>
 
-#include "cachesim/report/format.hpp"
 #include "tools/jobs/explain_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
@@ -41,22 +40,11 @@ std::string samples_text(std::size_t count) {
     return count == 1 ? "1 sample index" : fmt::format("{} sample indices", count);
 }
 
-/// With what was found of cache sizes, where that was asked for.
-std::string explanation_document(const cachesim::Explanation& e, const std::vector<std::string>& remarks) {
-    if (remarks.empty()) return cachesim::to_json(e);
-    Json json = Json::parse(cachesim::to_json(e));
-    json["cache_equivalents"] = remarks;
-    return json_text(json);
-}
-
-void publish(const ExplainArguments& o, const ExplainResult& result, const std::vector<std::string>& remarks) {
+void publish(const ExplainArguments& o, const ExplainResult& result) {
     const cachesim::Explanation& e = result.explanation;
-    std::string said;
-    for (const std::string& remark : remarks) said += cachesim::paragraph(remark + '.', 2);
     Deliveries deliveries;
     deliveries.attempt([&] {
-        print(o.json ? o.json.document(explanation_document(e, remarks), result.subject)
-                     : cachesim::to_text(e, o.width.columns()) + said);
+        print(o.json ? o.json.document(cachesim::to_json(e), result.subject) : cachesim::to_text(e, o.width.columns()));
     });
     if (!result.maps.empty())
         write_heat_maps(
@@ -102,9 +90,11 @@ Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) 
         if (job.pixels) tracer::check_drawing();
         const auto limit = o->threads.apply();
         Progress progress("explain");
-        std::vector<std::string> remarks;
-        if (o->equivalent) remarks = cache_equivalents(job.launches, {gpu}, std::nullopt, progress);
-        publish(*o, run(job, gpu, progress, outputs), remarks);
+        std::vector<std::string> equivalents;
+        if (o->equivalent) equivalents = cache_equivalents(job.launches, {gpu}, std::nullopt, progress);
+        ExplainResult result = run(job, gpu, progress, outputs);
+        result.explanation.cache_equivalents = std::move(equivalents);
+        publish(*o, result);
     };
 }
 
@@ -138,7 +128,7 @@ void add_explain(Program& program) {
         ->type_name("FILE.exr")
         ->excludes({"--windows", "--target-error", "--time-budget"});
     o->threads.add(*command);
-    add_cache_equivalent(*command, o->equivalent);
+    add_cache_equivalent(*command, o->equivalent, {});
     o->estimate.add(*command, "of the predicted speed-up, with --counts-only of bytes");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

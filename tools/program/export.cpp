@@ -1,5 +1,6 @@
 // raycache export: a trace, or what a cache is asked during its replay, for other tools.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -30,22 +31,27 @@ struct ExportArguments {
     traces::TracegSettings traceg;
 };
 
-const cachesim::SectorFormat* find_sector_format(const std::string& name) {
-    for (const cachesim::SectorFormat& format : cachesim::sector_formats())
-        if (format.name == name) return &format;
-    return nullptr;
+template <class Format>
+const Format* find_format(const std::vector<Format>& formats, const std::string& name) {
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.name == name; });
+    return found == formats.end() ? nullptr : &*found;
 }
 
-const cachesim::DramFormat* find_dram_format(const std::string& name) {
-    for (const cachesim::DramFormat& format : cachesim::dram_formats())
-        if (format.name == name) return &format;
-    return nullptr;
+template <class Format>
+void append_names(const std::vector<Format>& formats, std::vector<std::string>& names) {
+    for (const Format& format : formats) names.push_back(format.name);
+}
+
+std::vector<std::string> dram_format_names() {
+    std::vector<std::string> names;
+    append_names(cachesim::dram_formats(), names);
+    return names;
 }
 
 std::vector<std::string> format_names() {
     std::vector<std::string> names;
-    for (const cachesim::SectorFormat& format : cachesim::sector_formats()) names.push_back(format.name);
-    for (const cachesim::DramFormat& format : cachesim::dram_formats()) names.push_back(format.name);
+    append_names(cachesim::sector_formats(), names);
+    append_names(cachesim::dram_formats(), names);
     names.emplace_back("accel-sim");
     return names;
 }
@@ -157,13 +163,13 @@ Action plan_dram(const std::shared_ptr<const ExportArguments>& o, const cachesim
     if (o->sm || o->l1)
         throw UsageError(
             fmt::format("--sm or --l1 with --level dram; expected neither: all SMs of {} share it", gpu.name));
-    const cachesim::DramFormat* format = find_dram_format(o->format);
+    const cachesim::DramFormat* format = find_format(cachesim::dram_formats(), o->format);
     if (!format)
+        throw UsageError(fmt::format("--format {} with --level dram; expected one of: {}", o->format,
+                                     fmt::join(dram_format_names(), ", ")));
+    if (o->cycle_mhz && !format->has_cycles)
         throw UsageError(
-            fmt::format("--format {} with --level dram; expected one of: ramulator, ramulator2, dramsim3", o->format));
-    if (o->cycle_mhz && format->name != "dramsim3")
-        throw UsageError(fmt::format("--cycle-mhz with --format {}; expected dramsim3: {} has no cycles", format->name,
-                                     format->name));
+            fmt::format("--cycle-mhz with --format {}; expected a format that has cycles: dramsim3", format->name));
     o->gpu.check_timed({gpu});
     if (const std::string note = cachesim::no_time_note(gpu); !note.empty())
         throw UsageError(
@@ -184,8 +190,7 @@ Action plan(const std::shared_ptr<const ExportArguments>& o) {
         if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->cycle_mhz || o->level != "l1")
             throw UsageError(
                 "--format accel-sim with --gpu, --set, --l1-kib, --l2-kib, --warps-per-sm, --level, --cycle-mhz, --sm "
-                "or --l1; "
-                "expected none: it holds a whole launch");
+                "or --l1; expected none: it holds a whole launch");
         refuse_overwriting({o->trace}, accel_sim_files(o->output));
         return [o] { export_instructions(*o); };
     }
@@ -194,7 +199,7 @@ Action plan(const std::shared_ptr<const ExportArguments>& o) {
     refuse_overwriting({o->trace}, {o->output});
     const cachesim::Gpu gpu = o->gpu.load_one({o->output}, "export");
     if (o->level == "dram") return plan_dram(o, gpu);
-    const cachesim::SectorFormat* format = find_sector_format(o->format);
+    const cachesim::SectorFormat* format = find_format(cachesim::sector_formats(), o->format);
     if (!format)
         throw UsageError(
             fmt::format("--format {} with --level {}; expected --level dram: it holds what DRAM is asked for",
@@ -213,8 +218,7 @@ void add_export(Program& program) {
     command
         ->add_option("--format", o->format,
                      "dinero (\"0 HEX\" a line), u64 (8 bytes a sector), csv; of --level dram ramulator, ramulator2, "
-                     "dramsim3; or "
-                     "accel-sim (warp instructions)")
+                     "dramsim3; or accel-sim (warp instructions)")
         ->choices("format", format_names())
         ->required();
     command

@@ -1,6 +1,9 @@
 #include "tools/program/gpu_options.hpp"
 
+#include <fmt/format.h>
+
 #include "cachesim/gpus/gpu_name.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tools {
 
@@ -30,6 +33,21 @@ void GpuOptions::add_changes(Command& command) {
         ->range(std::uint64_t{1}, std::uint64_t{1024})
         ->default_text("");
     command.group("");
+}
+
+void GpuOptions::check_profiled(const std::vector<cachesim::Gpu>& gpus, bool timed) const {
+    for (const cachesim::Gpu& gpu : gpus) {
+        if (gpu.levels.size() != 2)
+            throw UsageError(fmt::format(
+                "--gpu {}: expected a GPU of two levels of caches for a profiler's counters, found {}: Nsight "
+                "Compute has no name for one between L1 and the shared L2",
+                gpu.name, gpu.levels.size()));
+        if (timed && gpu.traversal == cachesim::Traversal::rt_unit)
+            throw UsageError(
+                fmt::format("--timed with --gpu {}; expected traversal = software for a profiler's counters, found "
+                            "rt_unit: Nsight Compute's leave out what RT units read",
+                            gpu.name));
+    }
 }
 
 }  // namespace raycache::tools

@@ -77,18 +77,7 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) con
     refuse_overwriting(inputs, outputs());
     std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
     if (timed) gpus.check_timed(loaded);
-    for (const cachesim::Gpu& gpu : loaded)
-        if (!counters.empty() && gpu.levels.size() != 2)
-            throw UsageError(
-                fmt::format("--counters ncu with --gpu {}; expected a GPU of two levels of caches, found {}: Nsight "
-                            "Compute has no name for one between L1 and the shared L2",
-                            gpu.name, gpu.levels.size()));
-    for (const cachesim::Gpu& gpu : loaded)
-        if (timed && !counters.empty() && gpu.traversal == cachesim::Traversal::rt_unit)
-            throw UsageError(fmt::format(
-                "--counters ncu --timed with --gpu {}; expected traversal = software, found rt_unit: Nsight "
-                "Compute's counters leave out what RT units read",
-                gpu.name));
+    if (!counters.empty()) gpus.check_profiled(loaded, timed);
     return loaded;
 }
 
