@@ -26,8 +26,7 @@ struct CurveRow {
     CacheGeometry geometry;           ///< `ways`: those of the GPU's own cache, where the sets are its own
     std::vector<WaysCurve> launches;  ///< one per sample index
 
-    /// One more way, in bytes.
-    std::uint64_t way_bytes() const { return geometry.slices * geometry.sets * geometry.line_bytes; }
+    std::uint64_t way_bytes() const { return geometry.way_bytes(); }
     std::uint64_t most_useful_ways() const;
     /// Of which the curve says anything: 1, or more where it is of a sample.
     std::uint64_t least_ways() const { return launches.empty() ? 1 : launches.front().least_ways(); }

@@ -53,7 +53,10 @@ struct CacheGeometry {
     /// What the file says shared memory takes of the cache, in whole ways; `ways` are those that are left.
     std::uint64_t carve_out_bytes = 0;
 
-    std::uint64_t bytes() const { return slices * sets * ways * line_bytes; }
+    std::uint64_t lines() const { return slices * sets * ways; }
+    std::uint64_t bytes() const { return lines() * line_bytes; }
+    /// One more way.
+    std::uint64_t way_bytes() const { return slices * sets * line_bytes; }
 };
 
 }  // namespace raycache::cachesim

@@ -29,7 +29,7 @@ const std::vector<DramFormat>& dram_formats() {
     static const std::vector<DramFormat> formats{
         {"ramulator", "Ramulator's memory traces: \"0xADDRESS R\" or W", append_ramulator},
         {"ramulator2", "Ramulator 2's LoadStoreTrace: \"LD 0xADDRESS\" or ST", append_ramulator2},
-        {"dramsim3", "DRAMsim3's traces: \"0xADDRESS READ CYCLE\" or WRITE", append_dramsim3}};
+        {"dramsim3", "DRAMsim3's traces: \"0xADDRESS READ CYCLE\" or WRITE", append_dramsim3, true}};
     return formats;
 }
 

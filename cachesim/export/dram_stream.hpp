@@ -26,6 +26,7 @@ struct DramRequest {
 struct DramFormat {
     std::string name, description;
     void (*append)(const DramRequest&, std::string& out);
+    bool has_cycles = false;
 };
 
 /// ramulator, ramulator2, dramsim3.

@@ -26,8 +26,7 @@ std::span<const Key<Gpu>> chip_keys() {
          "which resident warp issues next; makes a difference in time only"},
         {"traversal", choice<&Gpu::traversal, traversals>(), initial, "",
          "who walks the BVH: instructions of the SM, or its RT unit, which needs `[rt_unit]`; makes a difference in "
-         "time "
-         "only"},
+         "time only"},
     };
     return keys;
 }

@@ -134,7 +134,7 @@ std::optional<GpuProblem> find_problem(const CacheGeometry& cache, const std::st
                           fmt::format("expected slices x sets x ways x line of at most 2^40 bytes, found "
                                       "{} x {} x {} x {}; check the unit",
                                       cache.slices, cache.sets, cache.ways, cache.line_bytes)};
-    if (cache.slices * cache.sets * cache.ways > most_lines / caches)
+    if (cache.lines() > most_lines / caches)
         return GpuProblem{level + ".sets",
                           fmt::format("expected at most 2^26 lines in all {0} cache{1} together, found {2} x {3} x {4} "
                                       "in each; make the cache smaller",

@@ -11,19 +11,7 @@ namespace raycache::cachesim {
 
 namespace {
 
-const char* index_name(const CacheGeometry& geometry) {
-    for (const auto& choice : set_indices)
-        if (choice.value == geometry.index) return choice.name;
-    return "";
-}
-
-/// `row` of ways, or of a policy.
-template <class Row>
-Estimate hit_rate(const LevelCurve& level, const Row& row, std::uint64_t at) {
-    Estimate misses = ratio_of_totals(level.misses(row, at));
-    misses.mean = 1 - misses.mean;
-    return misses;
-}
+const char* index_name(const CacheGeometry& geometry) { return name_of<SetIndex>(set_indices, geometry.index); }
 
 Json point_json(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
     std::uint64_t hits = 0, fetched = 0;

@@ -8,6 +8,7 @@
 
 #include "cachesim/gpus/choice.hpp"
 #include "cachesim/report/format.hpp"
+#include "traces/memory_budget.hpp"
 
 namespace raycache::cachesim {
 
@@ -40,12 +41,19 @@ void find_equivalents(CurveReport& report) {
 /// "570 to 640 KiB", or nothing.
 std::string interval_text(const EquivalentSize& e) {
     if (!e.low) return {};
-    if (!e.high) return fmt::format("; 95 % interval from {}, without upper end", short_size(*e.low));
-    return fmt::format("; 95 % interval {} to {}", short_size(*e.low), short_size(*e.high));
+    if (!e.high) return fmt::format("; 95 % interval from {}, without upper end", size_text(*e.low));
+    return fmt::format("; 95 % interval {} to {}", size_text(*e.low), size_text(*e.high));
 }
 
-std::string size_text_of(const EquivalentSize& e) {
-    return fmt::format("{} ({:.3g}x{})", short_size(*e.size), e.times(), interval_text(e));
+std::string text_of(const EquivalentSize& e) {
+    return fmt::format("{} ({:.3g}x{})", size_text(*e.size), e.times(), interval_text(e));
+}
+
+/// One less this.
+Estimate less_than_one(const Sums& sums) {
+    Estimate share = ratio_of_totals(sums);
+    share.mean = 1 - share.mean;
+    return share;
 }
 
 }  // namespace
@@ -99,11 +107,12 @@ std::vector<std::uint64_t> drawn_ways(const CurveRow& row) {
     }
 }
 
-std::string short_size(std::uint64_t bytes) {
-    const auto kib = static_cast<double>(bytes) / 1024;
-    if (bytes < 1024) return fmt::format("{} B", bytes);
-    if (kib < 1024) return fmt::format("{:.4g} KiB", kib);
-    return fmt::format("{:.4g} MiB", kib / 1024);
+Estimate hit_rate(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
+    return less_than_one(level.misses(row, ways));
+}
+
+Estimate hit_rate(const LevelCurve& level, const PolicyRow& row, std::size_t at) {
+    return less_than_one(level.misses(row, at));
 }
 
 std::string level_name(std::size_t level) { return fmt::format("L{}", level + 1); }
@@ -118,9 +127,7 @@ std::string row_name(const LevelCurve& level, std::size_t row) {
     if (row == 0) return "own sets";
     std::string name = fmt::format("{} set{}", g.sets, g.sets == 1 ? "" : "s");
     if (g.slices > 1) name += fmt::format(" in each of {} slices", g.slices);
-    if (g.index == own.index) return name;
-    for (const auto& choice : set_indices)
-        if (choice.value == g.index) name += std::string(", ") + choice.name;
+    if (g.index != own.index) name += std::string(", ") + name_of<SetIndex>(set_indices, g.index);
     return name;
 }
 
@@ -141,12 +148,12 @@ std::string series_name(const CurveReport& report, const CurveSeries& of) {
 }
 
 std::string to_sentence(const Equivalent& e) {
-    const std::string level = level_name(e.level), own = short_size(e.bytes.of);
+    const std::string level = level_name(e.level), own = size_text(e.bytes.of);
     std::string text =
         fmt::format("{}: {} with {} fetches as few bytes per ray as {} ", level, e.other_name, own, e.base_name);
-    text += e.bytes.size ? "with " + size_text_of(e.bytes) : "with no size: its first touches alone are more";
+    text += e.bytes.size ? "with " + text_of(e.bytes) : "with no size: its first touches alone are more";
     text += "; it misses as seldom as ";
-    text += e.misses.size ? "with " + size_text_of(e.misses) : "with none";
+    text += e.misses.size ? "with " + text_of(e.misses) : "with none";
     text += fmt::format("; with {} for both, {} needs {} times the {} bandwidth of {}", own, e.base_name,
                         with_interval(e.bandwidth, 2), traffic_name(e.level, e.levels), e.other_name);
     return text;

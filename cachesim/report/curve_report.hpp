@@ -53,8 +53,9 @@ std::string series_name(const CurveReport&, const CurveSeries&);
 /// "L1: micro-jitter with 128 KiB fetches as few bytes per ray as cranley-patterson with 600 KiB (4.7x; …); …"
 std::string to_sentence(const Equivalent&);
 
-/// "600 KiB": about four digits
-std::string short_size(std::uint64_t bytes);
+/// Share of what was asked for that is found, with so many ways; of a policy, at that place of its list.
+Estimate hit_rate(const LevelCurve&, const CurveRow&, std::uint64_t ways);
+Estimate hit_rate(const LevelCurve&, const PolicyRow&, std::size_t at);
 /// "L1"
 std::string level_name(std::size_t level);
 /// "L2-to-L1", "DRAM": where the bytes go that a level of so many fetches.

@@ -13,8 +13,9 @@ namespace raycache::cachesim {
 
 namespace {
 
-double hit_percent(const LevelCurve& level, const CurveRow& row, std::uint64_t ways) {
-    return 100 * (1 - ratio_of_totals(level.misses(row, ways)).mean);
+template <class Row>
+std::string hit_cell(const LevelCurve& level, const Row& row, std::uint64_t at) {
+    return decimals(100 * hit_rate(level, row, at).mean, 1);
 }
 
 /// Of the GPU's own sets: hit rate and bytes of every strategy, a row for each size.
@@ -31,10 +32,10 @@ std::string wide_table(const CurveReport& report, std::size_t l, std::size_t wid
                      TextTable::Align::right);
     for (const std::uint64_t size : table_sizes(report, l)) {
         const std::uint64_t ways = size / own.way_bytes();
-        std::vector<std::string> cells{short_size(size) + (ways == own.geometry.ways ? " *" : "  "),
+        std::vector<std::string> cells{size_text(size) + (ways == own.geometry.ways ? " *" : "  "),
                                        fmt::format("{}", ways)};
         for (const CurveSeries& s : report.series)
-            cells.push_back(decimals(hit_percent(s.levels[l], s.levels[l].rows.front(), ways), 1));
+            cells.push_back(hit_cell(s.levels[l], s.levels[l].rows.front(), ways));
         for (const CurveSeries& s : report.series)
             cells.push_back(with_interval(ratio_of_totals(s.levels[l].bytes_per_ray(s.levels[l].rows.front(), ways))));
         table.row(std::move(cells));
@@ -56,8 +57,8 @@ std::string long_table(const CurveReport& report, std::size_t l, std::size_t wid
         for (const std::uint64_t size : table_sizes(report, l)) {
             const std::uint64_t ways = size / own.way_bytes();
             const LevelCurve& level = s.levels[l];
-            table.row({series_name(report, s), short_size(size) + (ways == own.geometry.ways ? " *" : "  "),
-                       fmt::format("{}", ways), decimals(hit_percent(level, level.rows.front(), ways), 1),
+            table.row({series_name(report, s), size_text(size) + (ways == own.geometry.ways ? " *" : "  "),
+                       fmt::format("{}", ways), hit_cell(level, level.rows.front(), ways),
                        with_interval(ratio_of_totals(level.bytes_per_ray(level.rows.front(), ways)))});
         }
     return table.text(width);
@@ -82,11 +83,11 @@ std::string surface_table(const CurveReport& report, std::size_t l, std::size_t 
                      static_cast<unsigned>(r));
     for (const CurveSeries& s : report.series)
         for (const std::uint64_t size : table_sizes(report, l)) {
-            std::vector<std::string> cells{series_name(report, s), short_size(size)};
+            std::vector<std::string> cells{series_name(report, s), size_text(size)};
             for (const CurveRow& row : s.levels[l].rows) {
                 const std::uint64_t ways = size / row.way_bytes();
                 const bool whole = ways > 0 && size % row.way_bytes() == 0;
-                cells.push_back(whole ? decimals(hit_percent(s.levels[l], row, ways), 1) : "-");
+                cells.push_back(whole ? hit_cell(s.levels[l], row, ways) : "-");
             }
             table.row(std::move(cells));
         }
@@ -106,10 +107,9 @@ std::string policy_table(const CurveReport& report, std::size_t l, std::size_t w
         const LevelCurve& level = s.levels[l];
         for (std::size_t at = 0; at < first.policies.front().ways.size(); ++at) {
             const std::uint64_t ways = first.policies.front().ways[at];
-            std::vector<std::string> cells{series_name(report, s), short_size(ways * level.rows.front().way_bytes()),
-                                           decimals(hit_percent(level, level.rows.front(), ways), 1)};
-            for (const PolicyRow& row : level.policies)
-                cells.push_back(decimals(100 * (1 - ratio_of_totals(level.misses(row, at)).mean), 1));
+            std::vector<std::string> cells{series_name(report, s), size_text(ways * level.rows.front().way_bytes()),
+                                           hit_cell(level, level.rows.front(), ways)};
+            for (const PolicyRow& row : level.policies) cells.push_back(hit_cell(level, row, at));
             table.row(std::move(cells));
         }
     }
@@ -149,7 +149,7 @@ std::string to_text(const CurveReport& report, std::size_t width) {
         paragraph(fmt::format("L1 %: hits of load requests, as Nsight Compute counts; below L1, hits of sectors asked "
                               "for. B/ray: fetched by the level, launches beginning with cold caches. ±: 95 % "
                               "confidence interval over sample indices. The curves of a launch took {}.",
-                              raycache::size_text(memory)));
+                              size_text(memory)));
     for (const std::string& note : report.notes) text += paragraph("note: " + note, 2);
     return text;
 }

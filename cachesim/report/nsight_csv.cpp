@@ -7,8 +7,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "traces/error.hpp"
 #include "traces/printable.hpp"
@@ -102,21 +104,26 @@ std::size_t column_of(const CsvRecord& titles, std::string_view title) {
     return at == titles.fields.end() ? no_column : static_cast<std::size_t>(at - titles.fields.begin());
 }
 
-/// Where a launch is found in a line.
-struct LaunchColumns {
-    explicit LaunchColumns(const CsvRecord& titles)
-        : process(column_of(titles, "Process ID")), kernel(column_of(titles, "Kernel Name")) {}
+/// The launches of a profile, found by what a line says of its own.
+class LaunchTable {
+public:
+    explicit LaunchTable(const CsvRecord& titles)
+        : process_(column_of(titles, "Process ID")), kernel_(column_of(titles, "Kernel Name")) {}
 
-    MeasuredLaunch& launch_of(const CsvRecord& record, std::vector<MeasuredLaunch>& launches) const {
+    MeasuredLaunch& launch_of(const CsvRecord& record) {
         const std::string &id = record.fields[0],
-                          of_process = process == no_column ? std::string() : record.fields[process];
-        for (auto launch = launches.rbegin(); launch != launches.rend(); ++launch)
-            if (launch->id == id && launch->process == of_process) return *launch;
-        launches.push_back({id, of_process, kernel == no_column ? std::string() : record.fields[kernel], {}});
-        return launches.back();
+                          of_process = process_ == no_column ? std::string() : record.fields[process_];
+        const auto [at, is_new] = places_.try_emplace({of_process, id}, launches_.size());
+        if (is_new)
+            launches_.push_back({id, of_process, kernel_ == no_column ? std::string() : record.fields[kernel_], {}});
+        return launches_[at->second];
     }
+    std::vector<MeasuredLaunch>& launches() { return launches_; }
 
-    std::size_t process, kernel;
+private:
+    std::size_t process_, kernel_;
+    std::map<std::pair<std::string, std::string>, std::size_t> places_;  ///< by process and number in it
+    std::vector<MeasuredLaunch> launches_;
 };
 
 /// "1,234.5" without commas; none where these do not part thousands.
@@ -193,7 +200,7 @@ NsightProfile read_nsight_csv(std::string_view text, const std::string& file) {
             fmt::format("{}: expected a line of titles that begins with \"ID\", found none: no table of Nsight "
                         "Compute; {}",
                         file, how_to_make));
-    const LaunchColumns columns(titles);
+    LaunchTable table(titles);
     const std::size_t name = column_of(titles, "Metric Name"), unit = column_of(titles, "Metric Unit"),
                       value = column_of(titles, "Metric Value");
     if (name != no_column && value == no_column)
@@ -201,7 +208,6 @@ NsightProfile read_nsight_csv(std::string_view text, const std::string& file) {
             fmt::format("{}: line {}: expected a column \"Metric Value\", found none: a summary of several "
                         "launches, as --print-summary makes; {}",
                         file, titles.line, how_to_make));
-    NsightProfile profile{file, {}};
     CsvRecord units;
     while (reader.next(record)) {
         if (record.fields == titles.fields) continue;  // of another process
@@ -210,27 +216,26 @@ NsightProfile read_nsight_csv(std::string_view text, const std::string& file) {
                                     titles.fields.size(), record.fields.size()));
         if (name != no_column) {
             if (record.fields[name].empty()) continue;  // a rule's
-            columns.launch_of(record, profile.launches)
-                .metrics.push_back({record.fields[name], unit == no_column ? "" : record.fields[unit],
-                                    record.fields[value], record.line});
+            table.launch_of(record).metrics.push_back(
+                {record.fields[name], unit == no_column ? "" : record.fields[unit], record.fields[value], record.line});
             continue;
         }
         if (record.fields[0].empty()) {
             units = record;
             continue;
         }
-        MeasuredLaunch& launch = columns.launch_of(record, profile.launches);
+        MeasuredLaunch& launch = table.launch_of(record);
         for (std::size_t i = 1; i < record.fields.size(); ++i)
             if (titles.fields[i].find("__") != std::string::npos)
                 launch.metrics.push_back(
                     {titles.fields[i], units.fields.empty() ? "" : units.fields[i], record.fields[i], record.line});
     }
-    if (profile.launches.empty())
+    if (table.launches().empty())
         throw Error(
             fmt::format("{}: no launch below the titles: the profiler met no kernel, or could not read its "
                         "counters (see its messages)",
                         file));
-    return profile;
+    return {file, std::move(table.launches())};
 }
 
 double measured_value(const MeasuredMetric& metric, std::string_view unit, const std::string& file) {

@@ -197,8 +197,7 @@ ProfileComparison compare_with_profile(const ProfiledSeries& series, const Nsigh
     if (pipeline)
         comparison.notes.emplace_back(
             "A kernel's name is that of a ray-tracing pipeline, whose traversal is in RT cores: its l1tex counters "
-            "lack "
-            "the nodes and triangles that are modelled.");
+            "lack the nodes and triangles that are modelled.");
     return comparison;
 }
 

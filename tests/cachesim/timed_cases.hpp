@@ -39,6 +39,19 @@ inline Gpu timed_gpu() {
     return gpu;
 }
 
+/// Three SMs that hold little, and objects that do not fit.
+inline Gpu small_timed_gpu() {
+    Gpu gpu = timed_gpu();
+    gpu.sms = 3;
+    gpu.warps_per_sm = 8;
+    gpu.warps_per_cta = 2;
+    gpu.levels[0].ways = 4;
+    gpu.levels[1].sets = 2;
+    return gpu;
+}
+inline const std::vector<traces::Region> objects{region(traces::ObjectKind::node, 0x200000, 64, 64, 3000),
+                                                 region(traces::ObjectKind::triangle, 0x800000, 48, 48, 2000)};
+
 /// Too few lines, registers and merges for its warps, in odd numbers.
 inline Gpu cramped_gpu(std::uint64_t ways) {
     Gpu gpu = timed_gpu();

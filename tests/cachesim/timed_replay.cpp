@@ -75,16 +75,9 @@ TEST_CASE("a stream from DRAM runs at the rate of DRAM") {
 
 TEST_CASE("what enters a level is what missed above it, and every request has an answer") {
     for (const std::uint32_t fill : {32u, 64u, 128u}) {
-        Gpu gpu = timed_gpu();
-        gpu.sms = 3;
-        gpu.warps_per_sm = 8;
-        gpu.warps_per_cta = 2;
-        gpu.levels[0].ways = 4;
-        gpu.levels[1].sets = 2;
+        Gpu gpu = small_timed_gpu();
         gpu.levels[1].fill_bytes = fill;
-        const Launch launch = random_launch(
-            {region(ObjectKind::node, 0x200000, 64, 64, 3000), region(ObjectKind::triangle, 0x800000, 48, 48, 2000)},
-            40, 60, fill);
+        const Launch launch = random_launch(objects, 40, 60, fill);
         const TimedStatistics t = timed(gpu, launch);
         CHECK(t.levels[1].requests() == t.levels[0].misses());
         if (fill == 32) CHECK(t.dram_sectors == t.levels[1].misses());

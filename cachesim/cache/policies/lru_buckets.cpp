@@ -295,7 +295,7 @@ namespace raycache::cachesim {
 HWY_EXPORT(new_lru_buckets);
 
 bool suits_lru_buckets(const CacheGeometry& geometry, InstructionSet instructions) {
-    const std::uint64_t lines = geometry.slices * geometry.sets * geometry.ways;
+    const std::uint64_t lines = geometry.lines();
     return instructions >= InstructionSet::avx2 && geometry.line_bytes / geometry.sector_bytes < 8 &&
            lines <= std::uint64_t{1} << 22;
 }

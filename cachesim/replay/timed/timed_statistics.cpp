@@ -1,6 +1,7 @@
 #include "cachesim/replay/timed/timed_statistics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
@@ -9,6 +10,19 @@
 namespace raycache::cachesim {
 
 namespace {
+
+constexpr std::array resources{&TimedStatistics::issue,
+                               &TimedStatistics::l1_port,
+                               &TimedStatistics::crossbar,
+                               &TimedStatistics::l2_slices,
+                               &TimedStatistics::dram,
+                               &TimedStatistics::l1_tags,
+                               &TimedStatistics::l1_data,
+                               &TimedStatistics::l1_mshrs,
+                               &TimedStatistics::l2_mshrs,
+                               &TimedStatistics::rt_box_tests,
+                               &TimedStatistics::rt_triangle_tests,
+                               &TimedStatistics::rt_warps};
 
 /// Calls use(mine, other's) for every counter of the two.
 template <class Use>
@@ -27,12 +41,7 @@ void for_each_counter(TimedStatistics& a, const TimedStatistics& b, const Use& u
                              &TimedStatistics::warp_cycles, &TimedStatistics::rt_loads})
         use(a.*count, b.*count);
     for (std::size_t level = 0; level < most_levels; ++level) for_each_counter(a.levels[level], b.levels[level], use);
-    for (const auto resource :
-         {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar, &TimedStatistics::l2_slices,
-          &TimedStatistics::dram, &TimedStatistics::l1_tags, &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs,
-          &TimedStatistics::l2_mshrs, &TimedStatistics::rt_box_tests, &TimedStatistics::rt_triangle_tests,
-          &TimedStatistics::rt_warps})
-        use((a.*resource).busy, (b.*resource).busy);
+    for (const auto resource : resources) use((a.*resource).busy, (b.*resource).busy);
     use(a.seconds, b.seconds);
 }
 
@@ -56,12 +65,7 @@ TimedStatistics& TimedStatistics::operator+=(const TimedStatistics& other) {
     warp_slots = other.warp_slots ? other.warp_slots : warp_slots;
     peak_l2_gb_s = std::max(peak_l2_gb_s, other.peak_l2_gb_s);
     peak_dram_gb_s = std::max(peak_dram_gb_s, other.peak_dram_gb_s);
-    for (const auto resource :
-         {&TimedStatistics::issue, &TimedStatistics::l1_port, &TimedStatistics::crossbar, &TimedStatistics::l2_slices,
-          &TimedStatistics::dram, &TimedStatistics::l1_tags, &TimedStatistics::l1_data, &TimedStatistics::l1_mshrs,
-          &TimedStatistics::l2_mshrs, &TimedStatistics::rt_box_tests, &TimedStatistics::rt_triangle_tests,
-          &TimedStatistics::rt_warps})
-        (this->*resource).copies = (other.*resource).copies;
+    for (const auto resource : resources) (this->*resource).copies = (other.*resource).copies;
     return *this;
 }
 

@@ -33,7 +33,7 @@ bench::CoverageSettings read(int argc, char** argv) {
     bench::CoverageSettings s;
     s.scene.source = "courtyard";
     s.sampling.resolution = "96x64";
-    s.sampling.k = "1";
+    s.sampling.k = std::string("1");
     s.gpu.names = {"rtx-3070"};
     bench::NameValues values;
     values.text("scene", s.scene.source);
