@@ -28,6 +28,13 @@ __device__ inline bool slab(const Ray& r, float ax, float bx, float ay, float by
     return entry <= exit;
 }
 
+/// The same of planes known to be near and far, without their minimum and maximum; origin negated.
+__device__ inline bool ordered_slab(const Ray& r, float nx, float fx, float ny, float fy, float nz, float fz) {
+    const float entry = fmaxf(fmaxf(fmaf(nx, r.ix, r.ox), fmaf(ny, r.iy, r.oy)), fmaxf(fmaf(nz, r.iz, r.oz), r.t_min));
+    const float exit = fminf(fminf(fmaf(fx, r.ix, r.ox), fmaf(fy, r.iy, r.oy)), fminf(fmaf(fz, r.iz, r.oz), r.t_max));
+    return entry <= exit;
+}
+
 __device__ inline void visit_bvh2(const float4* nodes, std::uint32_t* stack, Lane& lane) {
     const float4* node = nodes + 4 * std::size_t{lane.current};
     const float4 x = __ldg(node), y = __ldg(node + 1), z = __ldg(node + 2), c = __ldg(node + 3);
@@ -87,14 +94,16 @@ __device__ inline void visit_cwbvh8(const float4* nodes, std::uint64_t* stack, L
     const float4* node = nodes + 5 * std::size_t{lane.current};
     const float4 n0 = __ldg(node), n1 = __ldg(node + 1), n2 = __ldg(node + 2), n3 = __ldg(node + 3), n4 = __ldg(node + 4);
     const std::uint32_t e = __float_as_uint(n0.w);
-    // The ray in steps of the node's grid, as in Ylitie et al. 2017.
+    // The ray in steps of the node's grid, and by the signs of its direction which planes are near, as in Ylitie et al.
+    // 2017.
     Ray r = lane.ray;
-    r.ox = (lane.ray.ox - n0.x) * lane.ray.ix;
-    r.oy = (lane.ray.oy - n0.y) * lane.ray.iy;
-    r.oz = (lane.ray.oz - n0.z) * lane.ray.iz;
+    r.ox = (n0.x - lane.ray.ox) * lane.ray.ix;
+    r.oy = (n0.y - lane.ray.oy) * lane.ray.iy;
+    r.oz = (n0.z - lane.ray.oz) * lane.ray.iz;
     r.ix *= __uint_as_float((e & 0xff) << 23);
     r.iy *= __uint_as_float(((e >> 8) & 0xff) << 23);
     r.iz *= __uint_as_float(((e >> 16) & 0xff) << 23);
+    const bool sx = lane.ray.ix < 0, sy = lane.ray.iy < 0, sz = lane.ray.iz < 0;
     std::uint32_t hits = 0;
 #pragma unroll
     for (int half = 0; half < 2; ++half) {
@@ -102,6 +111,8 @@ __device__ inline void visit_cwbvh8(const float4* nodes, std::uint64_t* stack, L
         const std::uint32_t lx = __float_as_uint(half == 0 ? n2.x : n2.y), ly = __float_as_uint(half == 0 ? n2.z : n2.w),
                             lz = __float_as_uint(half == 0 ? n3.x : n3.y), ux = __float_as_uint(half == 0 ? n3.z : n3.w),
                             uy = __float_as_uint(half == 0 ? n4.x : n4.y), uz = __float_as_uint(half == 0 ? n4.z : n4.w);
+        const std::uint32_t nx = sx ? ux : lx, fx = sx ? lx : ux, ny = sy ? uy : ly, fy = sy ? ly : uy,
+                            nz = sz ? uz : lz, fz = sz ? lz : uz;
         // Of all four: which are nodes, and where the bits of each go.
         const std::uint32_t is_node = (meta & (meta << 1)) & 0x10101010;
         const std::uint32_t node_mask = __byte_perm(is_node << 3, 0, 0xba98);
@@ -109,8 +120,8 @@ __device__ inline void visit_cwbvh8(const float4* nodes, std::uint64_t* stack, L
         const std::uint32_t bits = (meta >> 5) & 0x07070707;
 #pragma unroll
         for (int i = 0; i < 4; ++i) {
-            float entry;
-            if (slab(r, byte_of(lx, i), byte_of(ux, i), byte_of(ly, i), byte_of(uy, i), byte_of(lz, i), byte_of(uz, i), entry))
+            if (ordered_slab(r, byte_of(nx, i), byte_of(fx, i), byte_of(ny, i), byte_of(fy, i), byte_of(nz, i),
+                             byte_of(fz, i)))
                 hits |= ((bits >> (8 * i)) & 0xff) << ((place >> (8 * i)) & 0xff);
         }
     }
