@@ -93,7 +93,7 @@ def table(comparison, columns, setting):
         lead.append(("group", lambda r: r["group"]))
     rows, previous = [], None
     for row in sorted(comparison.of(setting), key=lambda r: r["spp"]):
-        compared = row["strategy"] != comparison.baseline
+        compared = not comparison.is_baseline(row)
         rows.append({"rule": previous not in (None, row["spp"]),
                      "cells": [text(row) for _, text in lead] +
                               [cell(figure, row) if compared or not figure["compared"] else "baseline" for figure in columns]})

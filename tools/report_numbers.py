@@ -72,6 +72,7 @@ class Comparison:
         if any("dram_bytes_per_ray" not in row for row in self.rows):
             raise BadInput("rows without traffic")
         self.baseline = report["baseline"]
+        self.baseline_gpu = report.get("baseline_gpu")  # None: each row's own
         self.notes = report["notes"]
         self.command = report.get("settings") or {}
         self.grouped = report.get("by", "none") != "none"
@@ -97,6 +98,9 @@ class Comparison:
             return row["strategy"]
         k = re.match(r"K=(\S+)", row["parameters"])
         return f"{row['strategy']}, K = {k[1]}" if k else f"{row['strategy']} ({row['parameters']})"
+
+    def is_baseline(self, row):
+        return row["strategy"] == self.baseline and self.baseline_gpu in (None, row["gpu"])
 
     def of(self, setting):
         return [r for r in self.rows if self.setting(r) == setting]

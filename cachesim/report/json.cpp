@@ -60,7 +60,9 @@ Json figures_json(const Report& report, const char* at) {
 }
 
 std::string to_json(const Report& report) {
-    Json json{{"baseline", report.baseline}, {"by", name_of(report.by)}};
+    Json json{{"baseline", report.baseline.strategy},
+              {"baseline_gpu", report.baseline.gpu.empty() ? Json(nullptr) : Json(report.baseline.gpu)},
+              {"by", name_of(report.by)}};
     json["rows"] = Json::array();
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         json["rows"].push_back(row_names(report.rows[i]));

@@ -47,21 +47,36 @@ inline bool same_work_per_launch(std::string_view a, std::string_view b) {
     return a == b || (one_sample(a) && one_sample(b));
 }
 
-/// Whether they differ in what a strategy is made of, and in nothing else.
-inline bool comparable(const Origin& a, const Origin& b) {
-    const auto key = [](const Origin& o) { return std::tie(o.scene, o.sequence, o.spp, o.gpu); };
-    return key(a) == key(b) && same_work_per_launch(a.thread_map, b.thread_map);
-}
+/// What ratios refer to: a strategy, on the GPU of each row or, for variants of one GPU, on one of them.
+struct Baseline {
+    std::string strategy;  ///< empty: there are no ratios
+    std::string gpu;       ///< empty: that of each row
+
+    Baseline() = default;
+    Baseline(std::string of_strategy, std::string on_gpu = {})
+        : strategy(std::move(of_strategy)), gpu(std::move(on_gpu)) {}
+    Baseline(const char* of_strategy) : strategy(of_strategy) {}
+
+    bool empty() const { return strategy.empty(); }
+    bool is(const Origin& o) const { return o.strategy == strategy && (gpu.empty() || o.gpu == gpu); }
+    /// "cranley-patterson", "cranley-patterson on rtx-3070 (l1=128 KiB)"
+    std::string name() const { return gpu.empty() ? strategy : strategy + " on " + gpu; }
+    /// Whether `base` may be it for `of`: they differ in what a strategy is made of, or in `gpu`, and in nothing else.
+    bool serves(const Origin& base, const Origin& of) const {
+        const auto key = [](const Origin& o) { return std::tie(o.scene, o.sequence, o.spp); };
+        return is(base) && key(base) == key(of) && (!gpu.empty() || base.gpu == of.gpu) &&
+               same_work_per_launch(base.thread_map, of.thread_map);
+    }
+};
 
 /// What `of` is compared with: the first of its baseline's, of its own thread map where there is one; null where there
 /// is none. `same_part(other)`: whether both are of the same part of their launches.
 template <class Item, class SamePart>
-const Item* find_baseline(const std::vector<Item>& all, const Origin& of, const std::string& baseline,
+const Item* find_baseline(const std::vector<Item>& all, const Origin& of, const Baseline& baseline,
                           const SamePart& same_part) {
     const auto find = [&](bool same_map) -> const Item* {
         for (const Item& item : all)
-            if (item.strategy == baseline && comparable(item, of) && same_part(item) &&
-                (!same_map || item.thread_map == of.thread_map))
+            if (baseline.serves(item, of) && same_part(item) && (!same_map || item.thread_map == of.thread_map))
                 return &item;
         return nullptr;
     };
@@ -71,12 +86,12 @@ const Item* find_baseline(const std::vector<Item>& all, const Origin& of, const 
 
 /// Throws UsageError if `baseline` was given by the user but is the strategy of none.
 template <class Item>
-void check_baseline(const std::vector<Item>& all, const std::string& baseline) {
+void check_baseline(const std::vector<Item>& all, const Baseline& baseline) {
     std::set<std::string> names;
     for (const Item& item : all) names.insert(item.strategy);
-    if (baseline.empty() || names.contains(baseline)) return;
-    throw UsageError(
-        fmt::format("baseline: expected one of the strategies {}, found \"{}\"", fmt::join(names, ", "), baseline));
+    if (baseline.empty() || names.contains(baseline.strategy)) return;
+    throw UsageError(fmt::format("baseline: expected one of the strategies {}, found \"{}\"", fmt::join(names, ", "),
+                                 baseline.strategy));
 }
 
 }  // namespace raycache::cachesim

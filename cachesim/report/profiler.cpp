@@ -45,7 +45,7 @@ std::vector<ProfilerMetric> ProfilerReport::metrics() const {
     return shown;
 }
 
-ProfilerReport make_profile(const std::vector<ProfiledSeries>& all, const std::string& baseline, GroupBy by) {
+ProfilerReport make_profile(const std::vector<ProfiledSeries>& all, const Baseline& baseline, GroupBy by) {
     ProfilerReport profile{make_report(std::vector<Series>(all.begin(), all.end()), baseline, by), {}};
     // The rows of a report are the groups of each series, one series after the other.
     for (const ProfiledSeries& series : all) {

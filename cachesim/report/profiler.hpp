@@ -25,7 +25,7 @@ struct ProfilerReport {
 };
 
 /// Throws UsageError as make_report() does. With times all launches must be one group: GroupBy::none.
-ProfilerReport make_profile(const std::vector<ProfiledSeries>&, const std::string& baseline, GroupBy);
+ProfilerReport make_profile(const std::vector<ProfiledSeries>&, const Baseline& baseline, GroupBy);
 
 /// The same of one launch of a series.
 ProfilerReport make_profile(const ProfiledSeries&, std::size_t launch);

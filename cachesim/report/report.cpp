@@ -58,11 +58,11 @@ private:
     std::set<std::string> seen_;
 };
 
-void compare(Row& row, const std::vector<Row>& rows, const std::string& baseline, Notes& notes) {
+void compare(Row& row, const std::vector<Row>& rows, const Baseline& baseline, Notes& notes) {
     const Row* const base =
         find_baseline(rows, row, baseline, [&](const Row& other) { return other.group == row.group; });
     if (!base) {
-        notes.add(fmt::format("no ratio to the baseline {0} for {1}: the baseline has no such row{2}", baseline,
+        notes.add(fmt::format("no ratio to the baseline {0} for {1}: the baseline has no such row{2}", baseline.name(),
                               name_of(row), row.group == "all" ? "" : " in group " + row.group));
         return;
     }
@@ -70,7 +70,12 @@ void compare(Row& row, const std::vector<Row>& rows, const std::string& baseline
         notes.add(
             fmt::format("no ratio to the baseline {} for strategy {}, {}: their sample indices differ, so they "
                         "cannot be paired",
-                        baseline, row.strategy, name_of(row)));
+                        baseline.name(), row.strategy, name_of(row)));
+        return;
+    }
+    if (base->caches.levels != row.caches.levels || base->caches.sector_bytes != row.caches.sector_bytes) {
+        notes.add(fmt::format("no ratio to the baseline {} for {}: its caches have other levels or sectors",
+                              baseline.name(), name_of(row)));
         return;
     }
     row.factors = traffic_factors(base->by_launch, row.by_launch, row.caches);
@@ -125,7 +130,7 @@ std::string row_label(const Report& report, const Row& row) {
     return fmt::format("{}, N {}, {}{}", label, row.spp, row.gpu, report.by == GroupBy::none ? "" : ", " + row.group);
 }
 
-Report make_report(const std::vector<Series>& all_series, const std::string& baseline, GroupBy by) {
+Report make_report(const std::vector<Series>& all_series, const Baseline& baseline, GroupBy by) {
     Report report;
     report.baseline = baseline;
     report.by = by;
@@ -135,7 +140,7 @@ Report make_report(const std::vector<Series>& all_series, const std::string& bas
 
     Notes notes(report.notes);
     for (Row& row : report.rows) {
-        if (!baseline.empty() && row.strategy != baseline) compare(row, report.rows, baseline, notes);
+        if (!baseline.empty() && !baseline.is(row)) compare(row, report.rows, baseline, notes);
         widen(row);
         if (row.samples.size() == 1) notes.add("one sample index: no confidence interval");
     }

@@ -42,7 +42,7 @@ struct Row : Origin {
 };
 
 struct Report {
-    std::string baseline;
+    Baseline baseline;
     GroupBy by = GroupBy::none;
     std::vector<Row> rows;
     std::vector<std::string> notes;  ///< such as "no baseline row for …", "one sample index: no confidence interval"
@@ -60,7 +60,7 @@ struct Report {
 std::string row_label(const Report&, const Row&);
 
 /// Throws UsageError if `baseline` was given by the user but is in no series.
-Report make_report(const std::vector<Series>&, const std::string& baseline, GroupBy);
+Report make_report(const std::vector<Series>&, const Baseline& baseline, GroupBy);
 
 /// Tables of at most `width` columns where they can be so narrow: TextTable.
 std::string to_text(const Report&, std::size_t width = text_width);

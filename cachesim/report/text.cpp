@@ -78,7 +78,7 @@ std::vector<std::size_t> columns_of(const Report& report) {
 std::string cell(const Report& report, const Row& row, std::size_t i) {
     const TrafficFigure& figure = traffic_figures[i];
     if (figure.of == Of::total) return grouped(figure.total(row.totals, row.caches));
-    if (figure.is_compared() && row.strategy == report.baseline) return "baseline";
+    if (figure.is_compared() && report.baseline.is(row)) return "baseline";
     return figure_cell(figure, row.figures[i]);
 }
 
@@ -120,7 +120,8 @@ std::string legend_of(const Report& report, bool compared) {
         const TrafficFigure& figure = traffic_figures[i];
         if (!figure.legend || figure.is_compared() != compared) continue;
         const bool warm = figure.legend == bytes_legend && report.has_windows();
-        const std::string words = warm ? warm_bytes_legend : fmt::format(fmt::runtime(figure.legend), report.baseline);
+        const std::string words =
+            warm ? warm_bytes_legend : fmt::format(fmt::runtime(figure.legend), report.baseline.name());
         if (entries.empty() || entries.back().words != words)
             entries.push_back({figure.subject, words});
         else if (entries.back().subjects != figure.subject)
@@ -187,7 +188,7 @@ std::string factor_table(const Report& report, std::size_t width) {
         if (intervals) table.row(std::move(widths));
     }
     if (!any) return {};
-    return fmt::format("\nWhere the ratios to {} come from; below 1 is better\n\n", report.baseline) +
+    return fmt::format("\nWhere the ratios to {} come from; below 1 is better\n\n", report.baseline.name()) +
            table.text(width) + '\n' +
            paragraph(fmt::format("work: steps/ray; SIMT (efficiency): warp accesses/step; coal.(escing): sectors/warp "
                                  "access; L1 loc.(ality): miss rate of visits, {} of sectors asked for; each over the "

@@ -104,7 +104,11 @@ std::string to_json(const TimedReport& report) {
     Json figures = report.traffic.rows.empty() ? Json::array() : figures_json(report.traffic, "traffic");
     for (const TimedFigure& figure : timed_figures)
         if (figure.in_json() && report.shows(figure.presence)) figures.push_back(figure_json(figure, nullptr));
-    return dump({{"baseline", report.baseline}, {"rows", rows}, {"notes", report.notes}, {"figures", figures}});
+    return dump({{"baseline", report.baseline.strategy},
+                 {"baseline_gpu", report.baseline.gpu.empty() ? Json(nullptr) : Json(report.baseline.gpu)},
+                 {"rows", rows},
+                 {"notes", report.notes},
+                 {"figures", figures}});
 }
 
 std::string to_csv(const TimedReport& report) {

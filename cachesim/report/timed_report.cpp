@@ -75,7 +75,7 @@ void note_occupancy(TimedReport& report) {
 
 }  // namespace
 
-TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::string& baseline,
+TimedReport make_timed_report(const std::vector<TimedSeries>& all, const Baseline& baseline,
                               const std::vector<Series>& traffic) {
     TimedReport report;
     report.baseline = baseline;
@@ -83,7 +83,7 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
     for (const TimedSeries& series : all) {
         TimedRow row = make_row(series);
         const TimedSeries* const base = find_baseline(all, series, baseline, [](const TimedSeries&) { return true; });
-        if (row.has_time() && base && series.strategy != baseline) {
+        if (row.has_time() && base && !baseline.is(series)) {
             if (samples_of(*base) == samples_of(series)) {
                 for (std::size_t i = 0; i < row.figures.size(); ++i)
                     if (const TimedFigure& figure = timed_figures[i]; figure.of == Of::gain)
@@ -92,7 +92,7 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const std::st
                 report.notes.push_back(
                     fmt::format("no speed-up for strategy {}, N {}: its sample indices are not those "
                                 "of the baseline {}",
-                                series.strategy, series.spp, baseline));
+                                series.strategy, series.spp, baseline.name()));
             }
         }
         if (row.windows)

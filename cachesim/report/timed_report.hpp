@@ -40,7 +40,7 @@ struct TimedRow : TimedSeries {
 };
 
 struct TimedReport {
-    std::string baseline;
+    Baseline baseline;
     std::vector<TimedRow> rows;
     /// What the functional replay counts of the same launches, row by row; no rows where none was made.
     Report traffic;
@@ -59,7 +59,7 @@ std::string traversal_note(const TimedReport&);
 
 /// `traffic`: functional replays of the same launches, series by series in the same order, or none. Throws UsageError
 /// if `baseline` was given by the user but is in no series.
-TimedReport make_timed_report(const std::vector<TimedSeries>&, const std::string& baseline,
+TimedReport make_timed_report(const std::vector<TimedSeries>&, const Baseline& baseline,
                               const std::vector<Series>& traffic = {});
 
 /// What there is to say of a row against its baseline, in time and bytes; none without a ratio.

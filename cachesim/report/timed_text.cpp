@@ -74,7 +74,7 @@ public:
         return false;
     }
     std::string against_base(const TimedRow& row, const std::optional<Estimate>& ratio) const {
-        return row.strategy == report_.baseline ? "1" : with_interval(ratio, 3);
+        return report_.baseline.is(row) ? "1" : with_interval(ratio, 3);
     }
 
 private:
@@ -131,7 +131,7 @@ std::string traffic_table(const TimedReport& report, const Tables& tables, std::
 std::string legend(const TimedReport& report) {
     const bool windows = !report.rows.empty() && report.rows.front().windows;
     return paragraph(
-        "speed-up: cycles of " + (report.baseline.empty() ? std::string("a baseline") : report.baseline) +
+        "speed-up: cycles of " + (report.baseline.empty() ? std::string("a baseline") : report.baseline.name()) +
         " over those of the row. occupancy: share of the slots for warps that is taken, on average. L1 %: hits of "
         "load requests, as Nsight Compute counts (l1tex__t_sector_hit_rate), requests for a sector on its way "
         "included; merged %: the share of all requests that are such. L2 %: the same of what L1 asks. B/ray and "

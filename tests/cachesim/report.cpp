@@ -103,6 +103,31 @@ TEST_CASE("an unknown baseline is bad use; a missing or unpaired one is a note")
     CHECK_FALSE(r.rows[1].factors);
 }
 
+TEST_CASE("ratios across variants of a GPU are to the baseline on one of them, as if that were another strategy's") {
+    std::vector<Series> small = two_strategies(), large = two_strategies();
+    for (Series& s : large) s.gpu = "large";
+    for (LaunchStatistics& l : large[0].launches) l = launch(l.sample, counters(1000, 40000, 6000, 50000, 12000, 900));
+    std::vector<Series> all = small;
+    all.insert(all.end(), large.begin(), large.end());
+    const Report own = make_report(all, "rotation", GroupBy::none),
+                 across = make_report(all, {"rotation", small[0].gpu}, GroupBy::none);
+    CHECK_FALSE(own.rows[2]["l2_bytes_ratio"]);
+    CHECK_FALSE(across.rows[0]["l2_bytes_ratio"]);
+    Series renamed = large[0];
+    renamed.strategy = "larger";
+    renamed.gpu = small[0].gpu;
+    const Report expected = make_report({small[0], renamed}, "rotation", GroupBy::none);
+    CHECK(across.rows[2]["l2_bytes_ratio"]->mean == expected.rows[1]["l2_bytes_ratio"]->mean);
+    CHECK(across.rows[2].factors->product() == expected.rows[1].factors->product());
+    CHECK(across.rows[3]["dram_bytes_ratio"]->mean == own.rows[1]["dram_bytes_ratio"]->mean);  // the same launches
+    CHECK(to_text(across).find("ratios to rotation on " + small[0].gpu) != std::string::npos);
+
+    all[2].caches.levels = 3;
+    const Report other = make_report(all, {"rotation", small[0].gpu}, GroupBy::none);
+    CHECK_FALSE(other.rows[2]["l2_bytes_ratio"]);
+    CHECK(other.notes.front().find("its caches have other levels or sectors") != std::string::npos);
+}
+
 TEST_CASE("warps of pixel classes are compared with warps of tiles, warps of one pixel's samples with neither") {
     auto all = two_strategies();
     all[1].thread_map = "classes:8";

@@ -64,6 +64,27 @@ class Reports(ProgramTest):
             self.assertAlmostEqual(product / row["dram_bytes_ratio"]["mean"], 1, delta=1e-9)
             self.assertGreater(row["dram_bytes_ratio"]["half_width_95"], 0)
 
+    def test_across_gpus_all_variants_are_held_against_the_first(self):
+        variants = [*COMPARE[:-1], "rtx-3070", "--l1-kib", "16,128", "--across-gpus", "--json"]
+        report = self.succeeds(*variants, "--strategy", "cranley-patterson,micro-jitter").json
+        self.assertEqual((report["baseline"], report["baseline_gpu"]), ("cranley-patterson", "rtx-3070 (l1=16 KiB)"))
+        base, ratios = report["rows"][0]["l2_bytes_per_ray"]["mean"], []
+        for row in report["rows"]:
+            ratio = row["l2_bytes_ratio"]
+            ratios.append(ratio and ratio["mean"])
+            if ratio:
+                self.assertAlmostEqual(ratio["mean"], row["l2_bytes_per_ray"]["mean"] / base, places=9)
+        self.assertEqual(ratios.count(None), 1)
+        one = self.succeeds(*variants, "--strategy", "micro-jitter").json
+        self.assertEqual(one["baseline"], "micro-jitter")
+        self.assertLess(one["rows"][1]["l2_bytes_ratio"]["mean"], 1)
+
+        several = "expected several variants of one GPU, such as --l1-kib 128,256"
+        self.assertIn(several, self.refuses(2, *COMPARE, "--across-gpus"))
+        self.assertIn(several, self.refuses(2, *COMPARE[:-1], "rtx-3070,h100", "--across-gpus"))
+        self.assertIn("expected one clock", self.refuses(2, *COMPARE[:-1], "rtx-3070", "--set", "timing.clock_mhz=1000,2000",
+                                                         "--across-gpus", "--timed"))
+
     def test_without_cranley_patterson_there_is_a_table_without_ratios(self):
         report = self.succeeds(*COMPARE, "--strategy", "coherent,micro-jitter", "--json").json
         self.assertEqual([row["dram_bytes_ratio"] for row in report["rows"]], [None, None])

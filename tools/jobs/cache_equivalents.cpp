@@ -13,7 +13,7 @@ std::vector<std::string> cache_equivalents(const LaunchSettings& launches, const
         job.launches = launches;
         job.levels = {0};
         CurveResult result = run(job, gpu, observer);
-        const std::string of = baseline ? baseline_of(result.series, *baseline) : result.series.front().strategy;
+        const std::string of = baseline ? baseline_strategy(result.series, *baseline) : result.series.front().strategy;
         const cachesim::CurveReport report = cachesim::make_curve_report(std::move(result.series), of, {});
         for (const cachesim::Equivalent& e : report.equivalents)
             sentences.push_back((gpus.size() > 1 ? gpu.name + ", " : "") + to_sentence(e));

@@ -106,9 +106,9 @@ struct Fields<SamplesJob> {
 template <>
 struct Fields<EstimateSettings> {
     using S = EstimateSettings;
-    static constexpr std::tuple all{Field{"windows", &S::windows}, Field{"target_error", &S::target_error},
+    static constexpr std::tuple all{Field{"windows", &S::windows},         Field{"target_error", &S::target_error},
                                     Field{"time_budget", &S::time_budget}, Field{"window_count", &S::window_count},
-                                    Field{"baseline", &S::baseline}};
+                                    Field{"baseline", &S::baseline},       Field{"across_gpus", &S::across_gpus}};
 };
 
 template <>

@@ -70,6 +70,7 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
     std::string why_exact;
     job.estimate = o->estimate.settings(*command, job.launches, why_exact);
     job.estimate.baseline = o->report.baseline;
+    job.estimate.across_gpus = o->report.across_gpus;
     if (o->equivalent) check_whole_launches(job.estimate);
     return [o, command, job, gpus, why_exact] {
         if (job.launches.of_traces())
@@ -128,7 +129,9 @@ void add_compare(Program& program) {
          "cranley-patterson+meister,micro-jitter --gpu h100",
          "raycache compare courtyard --strategy cranley-patterson,cranley-patterson@classes,interleaved --gpu h100",
          "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --layout bvh2,cwbvh8 --spp 1024 "
-         "--gpu rtx-3070 --timed"});
+         "--gpu rtx-3070 --timed",
+         "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --spp 1024 --gpu rtx-3070 "
+         "--l1-kib 128,256 --across-gpus"});
     command->plan([o, command] { return plan(o, command); });
 }
 

@@ -37,7 +37,7 @@ struct CurveArguments {
 };
 
 void publish(const CurveArguments& o, CurveResult result, const std::vector<std::uint64_t>& sizes) {
-    const std::string baseline = baseline_of(result.series, o.baseline);
+    const std::string baseline = baseline_strategy(result.series, o.baseline);
     const cachesim::CurveReport report = cachesim::make_curve_report(std::move(result.series), baseline, sizes);
     print(o.json  ? o.json.document(cachesim::to_json(report), result.subject)
           : o.csv ? cachesim::to_csv(report)

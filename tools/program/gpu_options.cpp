@@ -50,4 +50,17 @@ void GpuOptions::check_profiled(const std::vector<cachesim::Gpu>& gpus, bool tim
     }
 }
 
+void GpuOptions::check_variants(const std::vector<cachesim::Gpu>& gpus, bool timed) const {
+    if (names.size() != 1 || gpus.size() < 2)
+        throw UsageError(
+            fmt::format("--across-gpus for {} {}; expected several variants of one GPU, such as --l1-kib 128,256",
+                        gpus.size(), gpus.size() == 1 ? "GPU" : "GPUs of different names"));
+    for (const cachesim::Gpu& gpu : gpus)
+        if (timed && gpu.timing->clock_mhz != gpus.front().timing->clock_mhz)
+            throw UsageError(
+                fmt::format("--across-gpus with --timed: {} MHz in {}, {} MHz in {}; expected one clock, since "
+                            "speed-ups are ratios of cycles",
+                            gpus.front().timing->clock_mhz, gpus.front().name, gpu.timing->clock_mhz, gpu.name));
+}
+
 }  // namespace raycache::tools

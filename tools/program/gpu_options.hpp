@@ -14,6 +14,8 @@ struct GpuOptions : GpuSettings {
     /// Throws UsageError for GPUs whose counts have no name among a profiler's metrics: of three levels of caches, and,
     /// with times, of RT units.
     void check_profiled(const std::vector<cachesim::Gpu>&, bool timed) const;
+    /// Throws UsageError unless they are several variants of one GPU, with times: of one clock.
+    void check_variants(const std::vector<cachesim::Gpu>&, bool timed) const;
 };
 
 }  // namespace raycache::tools

@@ -60,6 +60,10 @@ void ReportOptions::add(Command& command, bool with_baseline) {
             .add_option("--baseline", baseline,
                         "strategy that ratios refer to; default: cranley-patterson where it is compared")
             ->check(strategy_name_check());
+    if (with_baseline)
+        command.add_flag("--across-gpus", across_gpus,
+                         "ratios of all variants of the GPU (--set, --l1-kib, --l2-kib) to the baseline on the first "
+                         "of them, instead of on their own");
     json.add(command);
     width.add(command);
     command.add_flag("--csv", csv, "print CSV")->excludes({"--json"});
@@ -77,6 +81,7 @@ std::vector<cachesim::Gpu> ReportOptions::load_gpus(const FileNames& inputs) con
     refuse_overwriting(inputs, outputs());
     std::vector<cachesim::Gpu> loaded = gpus.load(outputs());
     if (timed) gpus.check_timed(loaded);
+    if (across_gpus) gpus.check_variants(loaded, timed);
     if (!counters.empty()) gpus.check_profiled(loaded, timed);
     return loaded;
 }
@@ -103,11 +108,13 @@ ReplayJob ReportOptions::job() const {
 
 void ReportOptions::publish(const ReplayResult& result, const std::vector<std::string>& remarks) const {
     if (timed) {
-        auto report = cachesim::make_timed_report(result.times, baseline_of(result.times, baseline), result.series);
+        auto report =
+            cachesim::make_timed_report(result.times, baseline_of(result.times, baseline, across_gpus), result.series);
         report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
         return print_and_save(report, result.subject, *this);
     }
-    cachesim::Report report = cachesim::make_report(result.series, baseline_of(result.series, baseline), parse_by(by));
+    cachesim::Report report =
+        cachesim::make_report(result.series, baseline_of(result.series, baseline, across_gpus), parse_by(by));
     report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
     print_and_save(report, result.subject, *this);
 }
@@ -116,8 +123,9 @@ void ReportOptions::run_and_publish(const ReplayJob& job, const std::vector<cach
                                     const std::vector<std::string>& remarks) const {
     if (counters.empty()) return publish(run(job, loaded, observer, outputs()), remarks);
     const ProfileResult result = profile(job, loaded, observer, outputs());
-    print_and_save(cachesim::make_profile(result.series, baseline_of(result.series, baseline), parse_by(by)),
-                   result.subject, *this);
+    print_and_save(
+        cachesim::make_profile(result.series, baseline_of(result.series, baseline, across_gpus), parse_by(by)),
+        result.subject, *this);
 }
 
 }  // namespace raycache::tools

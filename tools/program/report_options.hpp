@@ -13,7 +13,7 @@ namespace raycache::tools {
 
 struct ReportOptions {
     GpuOptions gpus;
-    bool timed = false;
+    bool timed = false, across_gpus = false;
     std::string by = "none", baseline, save, counters;
     JsonOption json;
     WidthOption width;

@@ -136,7 +136,7 @@ Worst Estimator::look(std::uint32_t end, const std::string& baseline) {
     if (blocks_ == 0) expect(0, end);
     run_blocks(end);
     error_of_look_ /= 2;
-    return worst_ = worst_error(result(), baseline);
+    return worst_ = worst_error(result(), baseline, settings_.across_gpus);
 }
 
 /// The half width falls with the square root of the blocks: the looks that are still to come.

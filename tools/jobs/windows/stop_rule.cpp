@@ -25,7 +25,7 @@ double share_of_asked(const cachesim::Row& row, std::size_t level) {
     return asked == 0 ? 0 : static_cast<double>(row.totals.fetched(level, row.caches.levels)) / asked;
 }
 
-Worst worst_of(const std::vector<cachesim::Series>& all, const std::string& baseline) {
+Worst worst_of(const std::vector<cachesim::Series>& all, const cachesim::Baseline& baseline) {
     Worst worst;
     const cachesim::Report report = cachesim::make_report(all, baseline, cachesim::GroupBy::none);
     const bool compared = std::any_of(report.rows.begin(), report.rows.end(),
@@ -48,7 +48,7 @@ Worst worst_of(const std::vector<cachesim::Series>& all, const std::string& base
     return worst;
 }
 
-Worst worst_of(const std::vector<cachesim::TimedSeries>& all, const std::string& baseline) {
+Worst worst_of(const std::vector<cachesim::TimedSeries>& all, const cachesim::Baseline& baseline) {
     Worst worst;
     const cachesim::TimedReport report = cachesim::make_timed_report(all, baseline);
     const bool compared = std::any_of(report.rows.begin(), report.rows.end(),
@@ -65,9 +65,9 @@ Worst worst_of(const std::vector<cachesim::TimedSeries>& all, const std::string&
 
 }  // namespace
 
-Worst worst_error(const Predicted& now, const std::string& baseline) {
-    return now.times.empty() ? worst_of(now.traffic, baseline_of(now.traffic, baseline))
-                             : worst_of(now.times, baseline_of(now.times, baseline));
+Worst worst_error(const Predicted& now, const std::string& baseline, bool across_gpus) {
+    return now.times.empty() ? worst_of(now.traffic, baseline_of(now.traffic, baseline, across_gpus))
+                             : worst_of(now.times, baseline_of(now.times, baseline, across_gpus));
 }
 
 }  // namespace raycache::tools

@@ -18,7 +18,7 @@ struct Worst {
 inline constexpr double negligible_share = 0.01;
 
 /// Of ratios to the baseline where there is one, else of means: predicted times if there are any, else bytes per ray of
-/// every level, where they are not negligible. `baseline`: as EstimateSettings has it.
-Worst worst_error(const Predicted&, const std::string& baseline);
+/// every level, where they are not negligible. `baseline`, `across_gpus`: as EstimateSettings has them.
+Worst worst_error(const Predicted&, const std::string& baseline, bool across_gpus = false);
 
 }  // namespace raycache::tools
