@@ -4,10 +4,11 @@ from support import GPU, SCENE, ProgramTest, main
 
 SMALL = [*SCENE, "--resolution", "16x16", "--bounces", "1"]
 CHANGES = {"--k": "1.5", "--s": "3", "--mu": "0.3", "--interleave": "5", "--cycles-multiplier": "0.5",
-           "--cycles-min-samples": "24", "--cycles-noise-threshold": "0.1"}
+           "--cycles-min-samples": "24", "--cycles-noise-threshold": "0.1", "--share": "light0", "--share-bits": "5"}
 READERS = {"--k": {"micro-jitter"}, "--s": {"micro-jitter"}, "--mu": {"micro-jitter", "scrambling-distance"},
            "--interleave": {"interleaved", "net-micro-jitter-fast"}, "--cycles-multiplier": {"scrambling-distance"},
-           "--cycles-min-samples": {"scrambling-distance"}, "--cycles-noise-threshold": {"scrambling-distance"}}
+           "--cycles-min-samples": {"scrambling-distance"}, "--cycles-noise-threshold": {"scrambling-distance"},
+           "--share": {"net-micro-jitter"}, "--share-bits": {"net-micro-jitter"}}
 
 
 class IdleOptions(ProgramTest):

@@ -21,8 +21,7 @@ class Strategies(ProgramTest):
             defined = []
             for strategy in strategies:
                 needs_net = strategy in ("uniform-jitter", "owen") or strategy.startswith("net-micro-jitter")
-                in_fours = strategy == "net-micro-jitter" and sequence in ("sobol-owen-02", "pmj02")
-                if (needs_net and sequence in ("halton", "halton-scrambled", "r2", "random")) or in_fours:
+                if needs_net and sequence in ("halton", "halton-scrambled", "r2", "random"):
                     line = self.refuses(2, *CAPTURE, "--sequence", sequence, "--strategy", strategy)
                     self.assertIn(f"{strategy} moves points inside the cells of a net in base 2", line)
                     self.assertIn(f"'{sequence}'", line)
@@ -33,7 +32,7 @@ class Strategies(ProgramTest):
                                    "--bounces", "1", "--sequence", sequence, "--strategy", ",".join(defined), *GPU,
                                    "--json").json
             self.assertEqual({row["strategy"] for row in report["rows"]}, set(defined))
-        self.assertEqual(refused, 4 * 4 + 2)
+        self.assertEqual(refused, 4 * 4)
 
     def test_every_strategy_renders(self):
         for strategy in self.names("strategies"):
@@ -43,7 +42,11 @@ class Strategies(ProgramTest):
         for options, words in [(["--strategy", "scrambling-distance"], "multiplier=1 distance_samples=64 mu=0.5"),
                                (["--strategy", "scrambling-distance", "--mu", "0.2"], "mu=0.2"),
                                (["--strategy", "interleaved", "--interleave", "5"], "m=5"),
-                               (["--strategy", "net-micro-jitter", "--sequence", "sobol-owen-4d"], "k=1 mu=0.5"),
+                               (["--strategy", "net-micro-jitter", "--sequence", "sobol-owen-4d", "--share", "sets"],
+                                "share=sets k=1 mu=0.5"),
+                               (["--strategy", "net-micro-jitter"], "share=first-bounce bits=6 free=6"),
+                               (["--strategy", "net-micro-jitter", "--share", "light0", "--share-bits", "4"],
+                                "share=light0 bits=4 free=6"),
                                (["--strategy", "net-micro-jitter-fast", "--sequence", "pmj02"], "k=3 mu=0.125 m=8"),
                                (["--k", "discrepancy", "--sequence", "r2"], "K=discrepancy("),
                                (["--s", "full", "--k", "0.9"], "K=0.9 s=full(")]:

@@ -141,6 +141,7 @@ TEST_CASE("measures: the density of a window as wide as everything, and of equal
     CHECK(everywhere.mean_square == 1);
     StrategySettings net{"sobol-owen-4d", "net-micro-jitter", {}, {}};
     net.samples.spp = 256;
+    net.parameters.set("share", "sets");
     const auto window = jitter_window(net, 2, 0);
     REQUIRE(window);
     CHECK(window->width < one);
@@ -154,6 +155,7 @@ TEST_CASE("measures: a strategy's window is where its values lie") {
     for (const char* name : {"micro-jitter", "scrambling-distance", "net-micro-jitter", "uniform-jitter", "coherent"}) {
         StrategySettings settings{"sobol", name, {}, {}};
         settings.samples.spp = 64;
+        settings.parameters.set("share", "sets");
         const auto window = jitter_window(settings, 4, 1);
         REQUIRE(window);
         const SamplingStrategy strategy(settings, 4);

@@ -19,6 +19,7 @@ FieldError measure(const char* sequence, const char* decorrelation, std::uint32_
     settings.samples.seed = 1;
     settings.parameters.set("k", k);
     settings.parameters.set("s", s);
+    settings.parameters.set("share", "sets");
     return summarise(measure_scenes(dimensions == 2 ? scenes_2d() : edges_4d(), dimensions, n,
                                     StrategyPoints(settings, dimensions)));
 }

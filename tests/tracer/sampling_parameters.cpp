@@ -37,6 +37,8 @@ const std::vector<std::pair<std::string, std::string>> changes{
     {"s", "3"},
     {"mu", "0.3"},
     {"interleave", "5"},
+    {"share", "light0"},
+    {"share-bits", "3"},
     {"cycles-multiplier", "0.5"},
     {"cycles-min-samples", "20"},
     {"cycles-noise-threshold", "0.1"},

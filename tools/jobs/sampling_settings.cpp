@@ -17,7 +17,8 @@ namespace {
 
 /// Parameters with an option of their own.
 const std::set<std::string> sampling_options{
-    "k", "s", "mu", "cycles-multiplier", "cycles-min-samples", "cycles-noise-threshold", "interleave"};
+    "k",          "s",     "mu",        "cycles-multiplier", "cycles-min-samples", "cycles-noise-threshold",
+    "interleave", "share", "share-bits"};
 
 /// The parameters that the strategy or its thread map reads: another command with them would be warned of
 /// (idle_options.hpp). Those that have their default are left out, but for K and s.
@@ -103,6 +104,8 @@ tracer::StrategySettings SamplingSettings::strategy(const std::string& sequence,
     if (cycles_noise_threshold != "off") read_real(cycles_noise_threshold, "--cycles-noise-threshold", {0, 1});
     p.set("cycles-noise-threshold", cycles_noise_threshold);
     p.set("interleave", interleave);
+    p.set("share", share);
+    if (share_bits) p.set("share-bits", *share_bits);
     for (const std::string& one : parameters) {
         const std::size_t at = one.find('=');
         if (at == std::string::npos)

@@ -28,7 +28,9 @@ struct SamplingSettings {
     std::uint64_t cycles_min_samples = 0;
     std::string cycles_noise_threshold = "0.01";  ///< or "off"
     unsigned interleave = 8;
-    std::vector<std::string> parameters;  ///< "NAME=VALUE" of any parameter; rule over the members above
+    std::string share = "first-bounce";       ///< of net-micro-jitter
+    std::optional<std::uint32_t> share_bits;  ///< absent: as many as are free
+    std::vector<std::string> parameters;      ///< "NAME=VALUE" of any parameter; rule over the members above
     std::uint64_t seed = 1;
 
     std::uint64_t trace_samples = 8;

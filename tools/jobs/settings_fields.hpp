@@ -33,6 +33,8 @@ struct Fields<SamplingSettings> {
                                     Field{"cycles_min_samples", &S::cycles_min_samples},
                                     Field{"cycles_noise_threshold", &S::cycles_noise_threshold},
                                     Field{"interleave", &S::interleave},
+                                    Field{"share", &S::share},
+                                    Field{"share_bits", &S::share_bits},
                                     Field{"parameters", &S::parameters},
                                     Field{"seed", &S::seed},
                                     Field{"trace_samples", &S::trace_samples},

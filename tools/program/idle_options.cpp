@@ -129,6 +129,8 @@ const std::vector<OptionRule>& rules() {
         {"--cycles-min-samples", parameter_rule("cycles-min-samples")},
         {"--cycles-noise-threshold", parameter_rule("cycles-noise-threshold")},
         {"--interleave", interleave_rule},
+        {"--share", parameter_rule("share")},
+        {"--share-bits", parameter_rule("share-bits")},
         {"--seed", seed_rule},
         {"--trace-samples", trace_samples_rule},
         {"--thread-map", thread_map_rule},

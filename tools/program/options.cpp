@@ -174,6 +174,15 @@ void SamplingOptions::add_strategy(Command& command) {
                     "M of the M x M pixel classes of interleaved, net-micro-jitter-fast and the thread map classes")
         ->range(std::uint64_t{1}, tracer::max_interleave);
     command
+        .add_option("--share", share,
+                    "pairs of dimensions whose leading bits net-micro-jitter shares between pixels, joined by +: "
+                    "first-bounce, light0, camera, or the first dimension of a pair; or sets: of all dimensions, in "
+                    "sets of 4")
+        ->type_name("PAIRS")
+        ->check([](std::string& word) { tracer::check_parameter(tracer::find_parameter("share"), word); });
+    command.add_option("--share-bits", share_bits, "bits that it shares; default: as many as are free of shared error")
+        ->range(std::uint64_t{0}, std::uint64_t{256});
+    command
         .add_option("--param", parameters,
                     "any parameter of a strategy by its name; rules over the option of the same name")
         ->repeated()

@@ -24,7 +24,7 @@ struct SceneOptions : SceneSettings {
 /// Paths and samples of one strategy, except its name and N.
 struct SamplingOptions : SamplingSettings {
     void add_picture(Command&);    ///< --resolution, and what paths() is made of
-    void add_strategy(Command&);   ///< --k --s --mu --cycles-… --interleave --seed
+    void add_strategy(Command&);   ///< --k --s --mu --cycles-… --interleave --share --seed
     void add_launches(Command&);   ///< --trace-samples --thread-map
     void add_execution(Command&);  ///< --execution --order
 };

@@ -27,6 +27,8 @@ public:
     virtual std::string warning() const { return {}; }
     /// Width of the window that all values of a pixel are moved in, 0 … 1; nothing for those without such a width.
     virtual std::optional<double> mu() const { return {}; }
+    /// The leading bits of that dimension that all pixels have in common, as a mask.
+    virtual std::uint32_t shared_bits(std::uint32_t /*dimension*/) const { return 0; }
 };
 
 struct DecorrelationEntry {

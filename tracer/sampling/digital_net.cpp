@@ -32,13 +32,12 @@ std::uint32_t row_of(const DirectionNumbers& v, unsigned digit, unsigned m) {
 
 }  // namespace
 
-unsigned equal_cell_bits(std::span<const DirectionNumbers> dimensions, unsigned m) {
+bool equal_cells(std::span<const DirectionNumbers> dimensions, std::span<const unsigned> bits, unsigned m) {
     Basis basis;
-    for (unsigned k = 0; (k + 1) * dimensions.size() <= m; ++k) {
-        for (const DirectionNumbers& v : dimensions)
-            if (!basis.add(row_of(v, k, m))) return k;
-    }
-    return m / static_cast<unsigned>(dimensions.size());
+    for (std::size_t d = 0; d < dimensions.size(); ++d)
+        for (unsigned digit = 0; digit < bits[d]; ++digit)
+            if (digit >= 32 || !basis.add(row_of(dimensions[d], digit, m))) return false;
+    return true;
 }
 
 }  // namespace raycache::tracer

@@ -18,10 +18,10 @@ inline std::uint32_t digital_point(const DirectionNumbers& v, std::uint32_t inde
     return x;
 }
 
-/// The largest k such that the first 2^m points fall equally often into each of the 2^(k s) cells of side 2^-k, where s
-/// is the number of dimensions: so long as the first k rows of all their matrices, cut to m columns, are linearly
-/// independent over GF(2) (Niederreiter 1992, theorem 4.28). It holds for every aligned block of 2^m points too, and
-/// after any nested uniform scrambling. Precondition: m <= 32, s >= 1.
-unsigned equal_cell_bits(std::span<const DirectionNumbers> dimensions, unsigned m);
+/// Whether the first 2^m points fall equally often into each cell that the leading bits[i] bits of the dimensions i make
+/// together: if the first bits[i] rows of all their matrices, cut to m columns, are linearly independent over GF(2)
+/// (Niederreiter 1992, theorem 4.28). It holds for every aligned block of 2^m points too, and after any nested uniform
+/// scrambling. Precondition: m <= 32, as many bits as dimensions.
+bool equal_cells(std::span<const DirectionNumbers> dimensions, std::span<const unsigned> bits, unsigned m);
 
 }  // namespace raycache::tracer

@@ -61,9 +61,15 @@ std::uint64_t Parameters::whole(const ParameterEntry& entry) const {
     return read_in_range<std::uint64_t>(entry, text(entry));
 }
 
+std::string Parameters::word(const ParameterEntry& entry) const {
+    entry.check(text(entry));
+    return text(entry);
+}
+
 bool Parameters::is_word(const ParameterEntry& entry) const { return *entry.word && text(entry) == entry.word; }
 
 void check_parameter(const ParameterEntry& entry, const std::string& value) {
+    if (entry.check) return entry.check(value);
     if (*entry.word && value == entry.word) return;
     if (entry.whole)
         read_in_range<std::uint64_t>(entry, value);

@@ -22,6 +22,8 @@ struct ParameterEntry {
     double least = 0;
     double most = std::numeric_limits<double>::infinity();  ///< infinity: no limit, though finite
     const char* word = "";                                  ///< that may stand instead of a number: "discrepancy"
+    /// Of what is no number but words: throws UsageError for what it may not be. Null: a number.
+    void (*check)(const std::string&) = nullptr;
 };
 
 /// What was given.
@@ -50,6 +52,7 @@ public:
     double real(const ParameterEntry&) const;
     std::uint64_t whole(const ParameterEntry&) const;
     bool is_word(const ParameterEntry&) const;
+    std::string word(const ParameterEntry&) const;  ///< of an entry with a check
 
     bool operator==(const Parameters&) const = default;
 

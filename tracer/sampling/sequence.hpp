@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,19 @@ public:
     /// s where every aligned group of s dimensions is a digital net in base 2 of its own, for every N = 2^m; 0 where
     /// dimensions are no nets in base 2.
     virtual std::uint32_t net_dimensions() const { return 0; }
-    /// The largest k such that the first 2^m points fall equally often into each of the 2^(k s) cells of side 2^-k of
-    /// the dimensions first … first+s-1. Precondition: net_dimensions() is a multiple of s, first is one too, m <= 32.
-    virtual unsigned equal_cell_bits(std::uint32_t /*first*/, unsigned /*s*/, unsigned /*m*/) const { return 0; }
+    /// Whether the first 2^m points fall equally often into each cell that the leading bits[i] bits of the dimensions
+    /// first + i make together. Precondition: with s = bits.size(), net_dimensions() and first are multiples of s, or
+    /// net_dimensions() is 0; m <= 32.
+    virtual bool equal_cells(std::uint32_t /*first*/, std::span<const unsigned> /*bits*/, unsigned /*m*/) const {
+        return false;
+    }
+    /// The largest k such that all 2^(k s) cells of side 2^-k of the dimensions first … first+s-1 are equal in that
+    /// sense. The same precondition.
+    unsigned equal_cell_bits(std::uint32_t first, unsigned s, unsigned m) const {
+        std::vector<unsigned> bits(s, 1);
+        while (bits.front() <= 32 && equal_cells(first, bits, m)) bits.assign(s, bits.front() + 1);
+        return bits.front() - 1;
+    }
 
     const std::string& name() const { return name_; }
 

@@ -27,9 +27,13 @@ std::optional<JitterWindow> jitter_window(const StrategySettings& strategy, std:
     SampleSet samples = strategy.samples;
     samples.dimensions = dimensions;
     const auto sequence = make_sequence(strategy.sequence, samples.seed);
-    if (name == "net-micro-jitter" || name == "uniform-jitter") {
-        const auto m = static_cast<unsigned>(std::bit_width(samples.spp) - 1);
-        const unsigned k = name == "uniform-jitter" ? m : sequence->equal_cell_bits(dimension / 4 * 4, 4, m);
+    if (name == "net-micro-jitter") {
+        const std::uint32_t shared =
+            make_decorrelation(name, strategy.parameters, samples, *sequence)->shared_bits(dimension);
+        return JitterWindow{0, std::uint64_t{~shared} + 1, shared};
+    }
+    if (name == "uniform-jitter") {
+        const auto k = static_cast<unsigned>(std::bit_width(samples.spp) - 1);
         return JitterWindow{0, whole_circle >> k, k == 0 ? 0 : ~0U << (32 - k)};
     }
     const bool automatic = name == "scrambling-distance";

@@ -24,8 +24,8 @@ struct JitterWindow {
 
 /// For coherent, micro-jitter, scrambling-distance, net-micro-jitter, uniform-jitter, and what is uniform over all
 /// pixels whatever the sequence (cranley-patterson, owen, random, blue-noise). Empty where pixels fall into classes
-/// (interleaved, net-micro-jitter-fast). `dimension` selects the set of net-micro-jitter. Precondition: the strategy is
-/// a defined pair.
+/// (interleaved, net-micro-jitter-fast). The window of `dimension`. Precondition: the strategy is a defined
+/// pair.
 std::optional<JitterWindow> jitter_window(const StrategySettings&, std::uint32_t dimensions, std::uint32_t dimension);
 
 struct UnionDensity {

@@ -14,6 +14,7 @@
 // spread over the cells, but are no net.
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "tracer/sampling/owen_scramble.hpp"
 #include "tracer/sampling/sequence.hpp"
@@ -118,7 +119,9 @@ public:
     std::uint32_t dimensions() const override { return 1024; }
     std::uint64_t points() const override { return table_.size(); }
     std::uint32_t net_dimensions() const override { return 2; }
-    unsigned equal_cell_bits(std::uint32_t, unsigned s, unsigned m) const override { return m / s; }
+    bool equal_cells(std::uint32_t, std::span<const unsigned> bits, unsigned m) const override {
+        return std::accumulate(bits.begin(), bits.end(), 0U) <= m;
+    }
 
 private:
     /// Exchanges the points of a block 2^j … 2^(j+1)-1.

@@ -18,8 +18,8 @@ public:
     }
     std::uint32_t dimensions() const override { return static_cast<std::uint32_t>(directions_.size()); }
     std::uint32_t net_dimensions() const override { return dimensions(); }
-    unsigned equal_cell_bits(std::uint32_t first, unsigned s, unsigned m) const override {
-        return tracer::equal_cell_bits(std::span(directions_).subspan(first, s), m);
+    bool equal_cells(std::uint32_t first, std::span<const unsigned> bits, unsigned m) const override {
+        return tracer::equal_cells(std::span(directions_).subspan(first, bits.size()), bits, m);
     }
 
 private:
