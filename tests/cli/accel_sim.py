@@ -61,6 +61,21 @@ class AccelSim(ProgramTest):
             self.assertIn("3 lanes of 2 loads read address 0", result.stderr)
             self.assertEqual([self.totals("k.rct")[key] for key in ("loads", "lane_accesses")], expected)
 
+    def test_stores_are_imported_where_asked_and_go_through_l1_to_l2(self):
+        load, write = "0 ffffffff 1 R4 LDG.E 1 R2 4 1 0x1000 4 0", "10 ffffffff 0 STG.E 2 R2 R4 4 1 0x1000 4 0"
+        self.path("k.traceg").write_text(self.kernel(load, write, load))
+        result = self.warns("import", "k.traceg", "-o", "k.rct")
+        self.assertIn("no loads of global memory (LDG, LDGSTS, LD) are left out: 1 STG", result.stderr)
+        self.succeeds("import", "k.traceg", "--stores", "-o", "k.rct")
+        rows = self.succeeds("replay", "k.rct", "--gpu", "v100", "--by", "object", "--json").json["rows"]
+        of = {row["group"]: row["totals"] for row in rows}
+        counts = {group: [totals[key] for key in ("sectors", "l1_hits", "l2_sectors", "l2_hits", "dram_sectors")]
+                  for group, totals in of.items()}
+        # The store finds nothing in L1 and leaves its line there; its four sectors go to DRAM once.
+        self.assertEqual(counts, {"node": [8, 4, 4, 0, 4], "ray state write": [4, 0, 4, 0, 4]})
+        self.path("a.din").write_text("0 7f5000000000\n")
+        self.refuses(2, "import", "a.din", "--stores", "-o", "x.rct", mentions=["--stores", "expected an Accel-Sim trace"])
+
     def test_a_list_of_kernels_is_a_launch_a_kernel(self):
         self.path("traces").mkdir()
         for i in (1, 2):

@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto fuse : {traces::Fuse::never, traces::Fuse::independent, traces::Fuse::always}) {
         traces::ImportSettings settings;
         settings.fuse = fuse;
+        settings.stores = fuse == traces::Fuse::independent;
         settings.program = settings.command = "fuzz";
         if (fuzz::accepts([&] { traces::import_traceg(path, output, settings); })) traces::verify(output);
     }

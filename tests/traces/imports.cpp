@@ -232,6 +232,52 @@ TEST_CASE("bulk copies, and generic loads of shared and local memory, are no loa
     CHECK(c.kernels.front().kernel.bypassing == 1);
 }
 
+TEST_CASE("stores of global memory are writes where they are asked for, and no load is joined across one") {
+    Case c;
+    const std::string windows = "-shmem base_addr = 0x00007f0000000000\n";
+    const std::vector<std::string> lines{
+        "0 3 1 R4 LDG.E.128 1 R2 16 1 0x1000 32 0",  "10 3 0 STG.E 2 R2 R4 4 1 0x1000 4 0",
+        "20 3 1 R8 LDG.E.128 1 R2 16 1 0x1010 32 0", "30 1 0 ST.E.64 2 R2 R4 8 0 0x2008 0",
+        "40 1 0 ST.E 2 R2 R4 4 0 0x7f0000000010 0",  "50 1 0 RED.E.ADD 2 R2 R4 4 0 0x1000 0"};
+    ImportSettings settings;
+    settings.stores = true;
+    for (const Fuse fuse : {Fuse::never, Fuse::independent, Fuse::always}) {
+        settings.fuse = fuse;
+        CHECK(c.import_text(head(5, 1, windows) + block(lines), settings) ==
+              std::vector<Access>{{0, 0, 3, 16, {0x1000, 0x1020}},
+                                  {0, 0, 3, 4, {0x1000, 0x1004}},
+                                  {0, 0, 3, 16, {0x1010, 0x1030}},
+                                  {0, 0, 1, 8, {0x2008}}});
+        const TracegKernel& kernel = c.kernels.front().kernel;
+        CHECK(kernel.loads == 2);
+        CHECK(kernel.stores == 2);
+        CHECK(kernel.left_out == std::map<std::string, std::uint64_t>{{"RED", 1}, {"ST", 1}});
+        const Reader reader(c.out);
+        for (const Region& region : reader.header().regions)
+            CHECK(region.kind == (region.element_size == 16 ? ObjectKind::node : ObjectKind::ray_state_write));
+    }
+    settings.stores = false;
+    settings.fuse = Fuse::never;
+    CHECK(c.import_text(head(5, 1, windows) + block(lines), settings) ==
+          std::vector<Access>{{0, 0, 3, 16, {0x1000, 0x1020}}, {0, 0, 3, 16, {0x1010, 0x1030}}});
+    CHECK(c.kernels.front().kernel.left_out == std::map<std::string, std::uint64_t>{{"RED", 1}, {"ST", 2}, {"STG", 1}});
+}
+
+TEST_CASE("objects of one size that are read and that are written are told apart at the same addresses") {
+    Case c;
+    ImportSettings settings;
+    settings.stores = true;
+    const std::vector<std::string> lines{"0 3 1 R4 LDG.E 1 R2 4 0 0x1000 0xff00000000000000 0",
+                                         "10 3 0 STG.E 2 R2 R4 4 0 0x1000 0xff00000000000000 0"};
+    CHECK(c.import_text(head() + block(lines), settings).size() == 2);
+    const Reader reader(c.out);
+    const std::vector<Region>& regions = reader.header().regions;
+    REQUIRE(regions.size() == 2);
+    CHECK(regions[0].kind == ObjectKind::node);
+    CHECK(regions[1].kind == ObjectKind::ray_state_write);
+    CHECK(regions[0].address(0) == regions[1].address(0));
+}
+
 TEST_CASE("gzip and zstd are told by their first bytes, several members and frames included, and damage is refused") {
     Case c;
     const std::string text = head() + block({one_load});

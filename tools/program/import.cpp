@@ -25,7 +25,7 @@ using traces::TraceKind;
 
 struct ImportArguments {
     std::string input, output, format = "auto", null_lanes = "drop-loads";
-    bool fuse = false, no_fuse = false;
+    bool fuse = false, no_fuse = false, stores = false;
     std::optional<std::uint32_t> access_bytes;
 };
 
@@ -50,6 +50,7 @@ std::string command_of(const ImportArguments& o) {
     if (o.format != "auto") text += " --format " + o.format;
     if (o.fuse) text += " --fuse";
     if (o.no_fuse) text += " --no-fuse";
+    if (o.stores) text += " --stores";
     if (o.null_lanes != "drop-loads") text += " --null-lanes " + o.null_lanes;
     if (o.access_bytes) text += fmt::format(" --access-bytes {}", *o.access_bytes);
     return text;
@@ -67,15 +68,15 @@ void warn_of(const ImportArguments& o, const std::vector<traces::ImportedKernel>
         null_loads += kernel.null_loads;
         ctas += kernel.ctas;
         empty += kernel.empty_ctas;
-        without += kernel.loads == 0;
+        without += kernel.loads + kernel.stores == 0;
     }
     std::string list;
     for (const auto& [opcode, count] : left_out)
         list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, opcode);
     if (!list.empty())
-        warn(
-            fmt::format("{}: memory instructions that are no loads of global memory (LDG, LDGSTS, LD) are left out: {}",
-                        o.input, list));
+        warn(fmt::format(
+            "{}: memory instructions that are no loads{} of global memory (LDG, LDGSTS, LD{}) are left out: {}",
+            o.input, o.stores ? " or stores" : "", o.stores ? ", STG, ST" : "", list));
     if (lanes > 0)
         warn(fmt::format("{}: {} lanes of {} loads read address 0, which tracers write where they lost an address: {}",
                          o.input, lanes, null_loads,
@@ -116,9 +117,10 @@ void run(const ImportArguments& o) {
     const Stage stage(progress, "read");
     const TraceKind kind = o.format == "auto" ? traces::guess_trace_kind(o.input) : kinds.at(o.format);
     const bool addresses = kind != TraceKind::accel_sim && kind != TraceKind::rtwarp;
-    if (kind != TraceKind::accel_sim && (o.fuse || o.no_fuse || o.null_lanes != "drop-loads"))
-        throw UsageError(fmt::format("--fuse, --no-fuse or --null-lanes: expected an Accel-Sim trace, found {}",
-                                     addresses ? "addresses" : "an RTWARP01 trace, whose objects are whole"));
+    if (kind != TraceKind::accel_sim && (o.fuse || o.no_fuse || o.stores || o.null_lanes != "drop-loads"))
+        throw UsageError(
+            fmt::format("--fuse, --no-fuse, --stores or --null-lanes: expected an Accel-Sim trace, found {}",
+                        addresses ? "addresses" : "an RTWARP01 trace, whose objects are whole"));
     if (!addresses && o.access_bytes) throw UsageError("--access-bytes: expected addresses (din, csv, u64)");
     switch (kind) {
         case TraceKind::rtwarp:
@@ -136,6 +138,7 @@ void run(const ImportArguments& o) {
     traces::ImportSettings settings;
     settings.fuse = o.fuse ? Fuse::always : o.no_fuse ? Fuse::never : Fuse::independent;
     settings.null_lanes = null_lanes.at(o.null_lanes);
+    settings.stores = o.stores;
     settings.program = program_name;
     settings.command = command_of(o);
     warn_of(o, traces::import_traceg(o.input, o.output, settings));
@@ -166,6 +169,7 @@ void add_import(Program& program) {
     command->add_flag("--no-fuse", o->no_fuse,
                       "each load by itself. Neither: one access where the loads are of 16 B and their registers show "
                       "that none waits for another");
+    command->add_flag("--stores", o->stores, "stores of global memory, too, which write through L1 to the last level");
     command
         ->add_option("--null-lanes", o->null_lanes,
                      "lanes that read address 0: leave out loads of nothing else (drop-loads), each such lane "
@@ -178,6 +182,7 @@ void add_import(Program& program) {
     command->examples({"raycache import kernel-1.traceg.xz -o kernel.rct",
                        "raycache import traces/kernelslist.g -o app.rct",
                        "raycache import mj-trace/kernel-1.traceg --fuse -o mj.rct",
+                       "raycache import kernel-1.traceg --stores -o kernel.rct",
                        "raycache import accesses.din --access-bytes 4 -o accesses.rct"});
     command->callback([o] { run(*o); });
 }

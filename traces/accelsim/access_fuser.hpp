@@ -1,4 +1,5 @@
-// Loads of a warp as accesses: each by itself, or those of an object that the compiler split as one.
+// Loads of a warp as accesses: each by itself, or those of an object that the compiler split as one. Stores are never
+// joined, and end what came before.
 #pragma once
 
 #include <algorithm>
@@ -33,6 +34,7 @@ public:
             flush(use);
             access_.mask = load.mask;
             access_.bytes = first_bytes_ = load.bytes;
+            access_.is_store = load.is_store;
             std::copy(load.addresses.begin(), load.addresses.end(), access_.addresses.begin());
             warp_ = warp;
             written_ = {};
@@ -41,7 +43,7 @@ public:
         last_bytes_ = load.bytes;
         written_ |= load.written;
         access_.grain = std::min(first_bytes_, access_.bytes & -access_.bytes);
-        if (fuse_ == Fuse::never) flush(use);
+        if (fuse_ == Fuse::never || load.is_store) flush(use);
     }
 
     template <class Use>
@@ -54,7 +56,8 @@ private:
     static constexpr std::uint32_t most_bytes = 4096, whole_bytes = 16;
 
     bool continues(const GlobalLoad& load) const {
-        if (access_.mask != load.mask || pc_ >= load.pc || access_.bytes + load.bytes > most_bytes) return false;
+        if (load.is_store || access_.mask != load.mask || pc_ >= load.pc || access_.bytes + load.bytes > most_bytes)
+            return false;
         if (fuse_ == Fuse::independent && (last_bytes_ != whole_bytes || load.bytes > whole_bytes ||
                                            (written_ & (load.read | load.written | load.between)).any()))
             return false;

@@ -51,6 +51,7 @@ std::vector<ImportedKernel> import_traceg(const std::string& input, const std::s
         ImportedKernel& kernel = kernels[launch];
         TracegOptions options;
         options.null_lanes = settings.null_lanes;
+        options.stores = settings.stores;
         options.number_by_place = !kernel.kernel.in_order;
         AccessFuser fuser(settings.fuse);
         const bool in_order = kernel.kernel.in_order;

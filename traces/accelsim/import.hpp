@@ -1,7 +1,8 @@
 // An Accel-Sim trace (traceg_parser.hpp, kernel_list.hpp) as a trace of this project: each load of global memory
-// becomes a warp access, each kernel a launch.
+// becomes a warp access, each kernel a launch; stores, if asked for, become accesses that write.
 //
-// What a load reads is an object of its width; where a kind is due (a step, a node), it counts as a node. Each thread
+// What a load reads is an object of its width; where a kind is due (a step, a node), it counts as a node; what a store
+// writes as a ray state, whose writes go through L1 to the last level (cachesim/MODEL.md). Each thread
 // that loads anything counts as one camera ray, so that "per ray" means per thread. A load is one access however far
 // apart its lanes are. Files are read twice, and nothing of them is kept (loads/load_writer.hpp). Where kernels have
 // different numbers of warps, launches end with warps that read nothing.
@@ -20,6 +21,7 @@ struct ImportSettings {
     Fuse fuse = Fuse::independent;
     std::string program, command;  ///< for Provenance
     NullLanes null_lanes = NullLanes::drop_loads;
+    bool stores = false;
 };
 
 /// A kernel that was imported.

@@ -107,12 +107,14 @@ void read_addresses(Words& words, const TextPlace& lines, std::uint32_t mask, st
                           : out.back() + static_cast<std::uint64_t>(words.number<std::int64_t>("difference", 10)));
 }
 
-/// Whether a load of this opcode reads global memory; a generic one does where its address says so.
-bool reads_global(std::string_view opcode, const InstructionGrammar& grammar, std::uint64_t address) {
+/// Whether an instruction of this opcode is the load or store named, of global memory; a generic one is where its
+/// address says so.
+bool is_global(const char* global, const char* generic, std::string_view opcode, const InstructionGrammar& grammar,
+               std::uint64_t address) {
     const std::string_view name = opcode.substr(0, opcode.find('.'));
-    if (name == "LDG" || name == "LDGSTS") return true;
+    if (name == global) return true;
     const auto inside = [&](std::uint64_t window) { return window != 0 && address - window < window_bytes; };
-    return name == "LD" && !inside(grammar.shared_window) && !inside(grammar.local_window);
+    return name == generic && !inside(grammar.shared_window) && !inside(grammar.local_window);
 }
 
 }  // namespace
@@ -140,16 +142,19 @@ InstructionLine parse_instruction(std::string_view line, const InstructionGramma
     if (!words.empty()) words.word("immediate");
     if (!words.empty() && grammar.version < 6)
         place.refuse("end of the instruction", "an immediate and no more", words.word(""));
-    found.is_load = reads_global(found.opcode, grammar, load.addresses.front());
-    if (!found.is_load) return found;
+    const std::uint64_t address = load.addresses.front();
+    load.is_store = grammar.stores && is_global("STG", "ST", found.opcode, grammar, address);
+    found.is_access = load.is_store || is_global("LDG", "LD", found.opcode, grammar, address) ||
+                      is_global("LDGSTS", "", found.opcode, grammar, address);
+    if (!found.is_access) return found;
     load.bytes = access_bytes(found.opcode, place);
     constexpr std::uint32_t register_bytes = 4;
     const RegisterSet first = load.written;
     for (std::uint32_t r = 1; r < load.bytes / register_bytes; ++r) load.written |= first << r;
     load.read |= load.read << 1;
-    for (const std::uint64_t address : load.addresses)
-        if (address % load.bytes != 0)
-            place.refuse("address", fmt::format("a multiple of {}", load.bytes), fmt::format("{:#x}", address));
+    for (const std::uint64_t each : load.addresses)
+        if (each % load.bytes != 0)
+            place.refuse("address", fmt::format("a multiple of {}", load.bytes), fmt::format("{:#x}", each));
     return found;
 }
 

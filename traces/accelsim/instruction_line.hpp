@@ -16,12 +16,13 @@ struct InstructionGrammar {
     unsigned version = 5;         ///< of the tracer
     /// Where a generic address leads to shared and to local memory; 0: not known.
     std::uint64_t shared_window = 0, local_window = 0;
+    bool stores = false;  ///< are told, too
 };
 
 struct InstructionLine {
     std::string_view opcode;     ///< "LDG.E.128.SYS"; part of the line
     bool has_addresses = false;  ///< memwidth is not 0 and lanes are active
-    bool is_load = false;        ///< of global memory, with active lanes; only then is `load` told
+    bool is_access = false;      ///< a load, or store, of global memory, with active lanes; only then is `load` told
 };
 
 /// `place`: where the line stands, for a refusal.

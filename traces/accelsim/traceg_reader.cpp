@@ -151,9 +151,16 @@ void TracegReader::instruction(std::string_view line, const TextPlace& place) {
     }
     first_instruction_ = false;
     const InstructionLine found = parse_instruction(line, grammar_, place, load_);
-    if (!found.is_load) {
+    if (!found.is_access) {
         between_ |= load_.read | load_.written;
         if (found.has_addresses) leave_out(found.opcode.substr(0, std::min<std::size_t>(found.opcode.find('.'), 16)));
+        return;
+    }
+    if (load_.is_store) {
+        between_ |= load_.read;
+        if (!drop_null_lanes()) return;
+        ++kernel_.stores;
+        use_(warp_, load_);
         return;
     }
     load_.between = between_;

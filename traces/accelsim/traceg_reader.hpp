@@ -18,7 +18,9 @@ class TracegReader {
 public:
     using Use = std::function<void(std::uint64_t warp, GlobalLoad&)>;
 
-    TracegReader(const Use& use, const TracegOptions& options) : use_(use), options_(options) {}
+    TracegReader(const Use& use, const TracegOptions& options) : use_(use), options_(options) {
+        grammar_.stores = options.stores;
+    }
 
     /// A line of the header, which begins with '-'.
     void header_line(std::string_view line, const TextPlace&);

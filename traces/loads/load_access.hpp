@@ -1,4 +1,4 @@
-// What load instructions of a warp read, as an import hands it on.
+// What load and store instructions of a warp read and write, as an import hands it on.
 #pragma once
 
 #include <array>
@@ -9,10 +9,11 @@
 
 namespace raycache::traces {
 
-/// One warp access: each active lane reads one object.
+/// One warp access: each active lane reads one object, or writes one.
 struct LoadAccess {
     std::uint32_t mask = 0;   ///< active lanes; never 0
     std::uint32_t bytes = 0;  ///< of an object, 1 to 4096
+    bool is_store = false;
     std::uint32_t grain = 1;  ///< a power of two up to 32 that divides every address of objects of this kind
     std::array<std::uint64_t, warp_lanes> addresses{};  ///< of the active lanes, lowest lane first
 

@@ -29,8 +29,8 @@ bool find_base(std::uint64_t first, std::uint64_t stride, std::uint64_t& base) {
 }  // namespace
 
 void RegionPlan::add(const LoadAccess& access) {
-    auto at = objects_.find({access.bytes, access.grain});
-    if (at == objects_.end()) at = objects_.try_emplace({access.bytes, access.grain}, access.grain).first;
+    auto at = objects_.find(key_of(access));
+    if (at == objects_.end()) at = objects_.try_emplace(key_of(access), access.grain).first;
     Objects& objects = at->second;
     std::uint64_t lowest = ~std::uint64_t{0}, highest = 0;
     for (unsigned i = 0; i < access.lanes(); ++i) {
@@ -103,15 +103,19 @@ std::vector<Region> RegionPlan::regions() {
     std::size_t sizes_left = objects_.size();
     for (auto& [key, objects] : objects_) {
         std::vector<std::uint64_t> pages = objects.addresses.page_numbers();
-        cover(key.first, objects, pages);
+        const std::uint32_t size = std::get<0>(key);
+        cover(size, objects, pages);
         // Room for one region of each size that follows.
         if (regions.size() + objects.ranges.size() + --sizes_left > format::max_regions) objects.ranges.clear();
-        objects.number = static_cast<std::uint8_t>(regions.size());
+        const std::size_t first = regions.size();
+        objects.number = static_cast<std::uint8_t>(first);
         for (Range& range : objects.ranges) {
             range.number = static_cast<std::uint8_t>(regions.size());
             regions.push_back(range.region);
         }
-        if (objects.ranges.empty()) regions.push_back(region_of_pages(key.first, objects, std::move(pages)));
+        if (objects.ranges.empty()) regions.push_back(region_of_pages(size, objects, std::move(pages)));
+        for (std::size_t i = first; i < regions.size(); ++i)
+            regions[i].kind = std::get<bool>(key) ? ObjectKind::ray_state_write : ObjectKind::node;
     }
     if (regions.size() > format::max_regions)
         throw Error(fmt::format("{}: expected objects of at most {} sizes, found more; import without --fuse", file_,
@@ -120,7 +124,7 @@ std::vector<Region> RegionPlan::regions() {
 }
 
 std::uint8_t RegionPlan::place(const LoadAccess& access, std::vector<std::uint32_t>& elements) {
-    const auto found = objects_.find({access.bytes, access.grain});
+    const auto found = objects_.find(key_of(access));
     if (found == objects_.end()) refuse_change();
     Objects& objects = found->second;
     if (objects.ranges.empty()) {

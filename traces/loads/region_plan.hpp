@@ -1,6 +1,6 @@
 // Regions of the trace format for objects that lie anywhere in memory.
 //
-// Objects of one size get regions without gaps where those can have them: elements at base + i * stride, the base a
+// Objects of one size, those that are read and those that are written apart, get regions without gaps where those can have them: elements at base + i * stride, the base a
 // multiple of 2 MiB, the stride their size, less than 2^30 of them. Where they cannot (objects of 48 B at multiples of
 // 16), or where the lanes of one access might lie in two of them, they get one region of pages (Region::pages): an
 // access is one record, however far apart its lanes are.
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -57,7 +58,11 @@ private:
 
     MemoryBudget& budget_;
     std::string file_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Objects> objects_;  ///< by size and grain
+    /// Size and grain, and whether they are written.
+    using Key = std::tuple<std::uint32_t, std::uint32_t, bool>;
+    static Key key_of(const LoadAccess& a) { return {a.bytes, a.grain, a.is_store}; }
+
+    std::map<Key, Objects> objects_;
 };
 
 }  // namespace raycache::traces
