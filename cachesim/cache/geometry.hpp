@@ -57,6 +57,7 @@ struct CacheGeometry {
     std::uint64_t bytes() const { return lines() * line_bytes; }
     /// One more way.
     std::uint64_t way_bytes() const { return slices * sets * line_bytes; }
+    bool operator==(const CacheGeometry&) const = default;
 };
 
 }  // namespace raycache::cachesim

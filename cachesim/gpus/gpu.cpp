@@ -86,9 +86,9 @@ std::string no_time_note(const Gpu& gpu) {
 
 const char* traversal_name(const Gpu& gpu) { return name_of<Traversal>(traversals, gpu.traversal); }
 
-std::vector<GpuValue> gpu_values(const std::string& name_or_path) {
+std::vector<GpuValue> gpu_values(const std::string& name_or_path, const std::vector<std::string>& changes) {
     const GpuText text = find_text(name_or_path);
-    return parse_gpu_values(text.toml, text.file);
+    return parse_gpu_values(text.toml, text.file, changes);
 }
 
 std::vector<GpuPreset> gpu_presets() {

@@ -24,6 +24,8 @@ struct FrontEnd {
     std::uint32_t load_bytes = 16;  ///< widest load that the compiler emits; objects are read in pieces of this size
     /// Lanes of one load that go to the tag stage together, for loads of 16, 8, and 4 or fewer bytes; 32 = whole warp.
     std::uint32_t lanes_per_request_16 = 32, lanes_per_request_8 = 32, lanes_per_request_4 = 32;
+
+    bool operator==(const FrontEnd&) const = default;
 };
 
 struct Gpu {
@@ -50,6 +52,7 @@ struct Gpu {
 
     const CacheGeometry& l1() const { return levels.front(); }
     CacheGeometry& l1() { return levels.front(); }
+    bool operator==(const Gpu&) const = default;
 };
 
 /// A preset's name, or the path of a .toml file (anything with a '/' or ending in ".toml"). `changes`: values that take
@@ -74,13 +77,25 @@ struct GpuPreset {
 /// Presets compiled into the program, sorted by name.
 std::vector<GpuPreset> gpu_presets();
 
+/// What a value may be instead, where no one has measured it: `range = [low, high]` or `choices = […]` of a GPU file.
+struct GpuRange {
+    bool listed = false;              ///< these values alone; else the two ends, and all between them
+    std::vector<std::string> values;  ///< as GpuValue::value; the value itself is among or between them
+    std::string source;               ///< why these; empty if the file does not say
+
+    /// Whether there is a value but the file's own.
+    bool leaves_open() const { return listed ? values.size() > 1 : values.front() != values.back(); }
+};
+
 /// One value of a GPU file, as it is written there.
 struct GpuValue {
     std::string key;     ///< "sms", "l1.ways"
     std::string value;   ///< "22", "modulo"
     std::string source;  ///< who says so, or "assumed…"; empty if the file gives none
+    std::optional<GpuRange> range;
 };
-/// Every value except name and description, in the order of the fields of Gpu. Takes and throws what load_gpu() does.
-std::vector<GpuValue> gpu_values(const std::string& name_or_path);
+/// Every value except name and description, in the order of the fields of Gpu. Takes and throws what load_gpu() does. A
+/// value that was changed has neither source nor range.
+std::vector<GpuValue> gpu_values(const std::string& name_or_path, const std::vector<std::string>& changes = {});
 
 }  // namespace raycache::cachesim

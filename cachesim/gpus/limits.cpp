@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "cachesim/gpus/key_tables.hpp"
+#include "cachesim/gpus/value_check.hpp"
 
 namespace raycache::cachesim {
 
@@ -70,14 +71,29 @@ private:
     }
 };
 
-/// The first value that its row does not allow. `section`: "", "timing."
+}  // namespace
+
+template <class Struct>
+std::optional<GpuProblem> find_value_problem(const Key<Struct>& key, const Struct& of, const std::string& section) {
+    return std::visit(Check<Struct>{section + key.name, of, !key.absent.refused}, key.value);
+}
+template std::optional<GpuProblem> find_value_problem(const Key<Gpu>&, const Gpu&, const std::string&);
+template std::optional<GpuProblem> find_value_problem(const Key<Registers>&, const Registers&, const std::string&);
+template std::optional<GpuProblem> find_value_problem(const Key<FrontEnd>&, const FrontEnd&, const std::string&);
+template std::optional<GpuProblem> find_value_problem(const Key<CacheGeometry>&, const CacheGeometry&,
+                                                      const std::string&);
+template std::optional<GpuProblem> find_value_problem(const Key<Timing>&, const Timing&, const std::string&);
+template std::optional<GpuProblem> find_value_problem(const Key<RtUnitTiming>&, const RtUnitTiming&,
+                                                      const std::string&);
+
+namespace {
+
+/// The first value that its row does not allow.
 template <class Struct>
 std::optional<GpuProblem> find_value_problem(std::span<const Key<Struct>> keys, const Struct& of,
                                              const std::string& section) {
-    for (const Key<Struct>& key : keys) {
-        const Check<Struct> check{section + key.name, of, !key.absent.refused};
-        if (auto p = std::visit(check, key.value)) return p;
-    }
+    for (const Key<Struct>& key : keys)
+        if (auto p = find_value_problem(key, of, section)) return p;
     return std::nullopt;
 }
 

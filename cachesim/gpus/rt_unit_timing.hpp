@@ -25,6 +25,8 @@ struct RtUnitTiming {
     std::uint32_t load_bytes = 32;      ///< nodes and triangles are fetched in pieces of this size
     std::uint32_t loads_per_cycle = 1;  ///< pieces, of all lanes of a warp each, that enter the queue to L1
     std::uint32_t load_queue = 4;       ///< loads of the unit that may wait for the port of an L1
+
+    bool operator==(const RtUnitTiming&) const = default;
 };
 
 }  // namespace raycache::cachesim

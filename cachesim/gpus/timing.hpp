@@ -96,6 +96,7 @@ struct Timing {
         return number == 1 ? LevelTiming{l2_latency, l2_mshrs, l2_mshr_merges, l2_bytes_per_cycle}
                            : LevelTiming{l3_latency, l3_mshrs, l3_mshr_merges, l3_bytes_per_cycle};
     }
+    bool operator==(const Timing&) const = default;
 };
 
 }  // namespace raycache::cachesim

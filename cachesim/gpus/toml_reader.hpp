@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <optional>
@@ -23,6 +24,9 @@
 #include <toml++/toml.h>
 
 namespace raycache::cachesim {
+
+/// What a file may say a key's value could be instead.
+enum class OtherValues { none, listed, between };
 
 class TomlReader {
 public:
@@ -145,6 +149,14 @@ public:
             return Section(*reader_, *table, prefix_ + key + ".");
         }
 
+        /// Goes through the other values that the file says the key may have, if it does: the ends of `range = [low,
+        /// high]`, or `choices = […]`. read() is called for each, and what it reads of the key is that one. Errors name
+        /// the list. The values stand in GpuValue::range.
+        template <class Read>
+        void read_others(const std::string& key, OtherValues may, const Read& read) const {
+            reader_->read_others(*table_, prefix_ + key, key, may, read);
+        }
+
     private:
         friend class TomlReader;
         Section(TomlReader& reader, const toml::table& table, std::string prefix)
@@ -168,14 +180,15 @@ public:
 
     /// A value that follows from others of the file.
     void note(const std::string& key, const std::string& value, const std::string& source) {
-        values_.push_back({key, value, source});
+        values_.push_back({key, value, source, {}});
     }
 
     /// In the order in which they were read.
     const std::vector<GpuValue>& values() const { return values_; }
 
 private:
-    [[noreturn]] void fail(std::size_t line, const std::string& key, const std::string& message) const {
+    [[noreturn]] void fail(std::size_t line, const std::string& of, const std::string& message) const {
+        const std::string key = other_ ? fmt::format("{}.{}", of, list_of_others_) : of;
         if (line == 0) throw UsageError(fmt::format("{} with --set: {}: {}", file_, key, message));  // from change()
         throw Error(fmt::format("{}:{}: {}: {}", file_, line, key, message));
     }
@@ -203,22 +216,99 @@ private:
         fail(std::max<std::size_t>(1, line_of(table)), prefix + key, "expected this key, found none; add it");
     }
 
-    /// The value itself, out of { value = …, source = "…" } if need be.
+    /// The value itself, out of { value = …, source = "…" } if need be, or another that is to be read in its place.
     const toml::node& value(const toml::table& table, const std::string& prefix, const std::string& key) {
         const toml::node& node = find(table, prefix, key);
         const std::string name = prefix + key;
+        if (other_) return *other_;
         lines_[name] = line_of(node);
         const toml::table* pair = node.as_table();
         if (!pair) {
-            values_.push_back({name, "", ""});
+            values_.push_back({name, "", "", {}});
             return node;
         }
-        only_keys(*pair, name + ".", {"value", "source"});
+        only_keys(*pair, name + ".", {"value", "source", "range", "choices", "range_source"});
         const toml::node& source = find(*pair, name + ".", "source");
         if (!source.is_string())
             fail(line_of(source), name + ".source", fmt::format("expected a string, found {}", type_name(source)));
-        values_.push_back({name, "", printable_line(source.value_or(std::string()))});
+        values_.push_back({name, "", printable_line(source.value_or(std::string())), {}});
         return find(*pair, name + ".", "value");
+    }
+
+    /// The list of a key that was read just now; null where the file gives none.
+    const toml::array* others_of(const toml::table& pair, const std::string& name, OtherValues may) const {
+        const toml::node *range = pair.get("range"), *choices = pair.get("choices");
+        if (range && choices)
+            fail(line_of(*choices), name + ".choices", "expected a range or choices, found both; remove one");
+        const toml::node* list = range ? range : choices;
+        if (!list) {
+            if (const toml::node* why = pair.get("range_source"))
+                fail(line_of(*why), name + ".range_source", "expected it beside a range or choices, found neither");
+            return nullptr;
+        }
+        const std::string full = name + (range ? ".range" : ".choices");
+        if (may == OtherValues::none)
+            fail(line_of(*list), full, "expected no other values of this key, found some; remove them");
+        if (range && may != OtherValues::between)
+            fail(line_of(*range), full,
+                 "expected choices, since not all between two of its values are values; list them");
+        const toml::array* array = list->as_array();
+        if (!array) fail(line_of(*list), full, fmt::format("expected a list of values, found {}", type_name(*list)));
+        if (range && array->size() != 2)
+            fail(line_of(*range), full, fmt::format("expected two numbers, [low, high], found {}", array->size()));
+        if (array->empty()) fail(line_of(*list), full, "expected at least the value itself, found an empty list");
+        return array;
+    }
+
+    template <class Read>
+    void read_others(const toml::table& table, const std::string& name, const std::string& key, OtherValues may,
+                     const Read& read) {
+        const toml::table* pair = table.get(key)->as_table();
+        const toml::array* array = pair ? others_of(*pair, name, may) : nullptr;
+        if (!array) return;
+        GpuRange range;
+        range.listed = pair->contains("choices");
+        list_of_others_ = range.listed ? "choices" : "range";
+        if (const toml::node* why = pair->get("range_source")) {
+            if (!why->is_string())
+                fail(line_of(*why), name + ".range_source",
+                     fmt::format("expected a string, found {}", type_name(*why)));
+            range.source = printable_line(why->value_or(std::string()));
+        }
+        const std::string own = values_.back().value;
+        const std::size_t line = lines_[name];
+        for (const toml::node& other : *array) {
+            other_ = &other;
+            lines_[name] = line_of(other);
+            values_.push_back({name, "", "", {}});
+            read();
+            range.values.push_back(values_.back().value);
+            values_.pop_back();
+        }
+        check_others(range, name, own);
+        other_ = nullptr;
+        lines_[name] = line;
+        values_.back().range = std::move(range);
+    }
+
+    void check_others(const GpuRange& range, const std::string& name, const std::string& own) const {
+        const auto& values = range.values;
+        const auto refuse = [&](const std::string& message) { fail(line_of(*other_), name, message); };
+        if (range.listed) {
+            for (const std::string& value : values)
+                if (std::count(values.begin(), values.end(), value) > 1)
+                    refuse(fmt::format("expected each choice once, found {} twice", value));
+            if (std::find(values.begin(), values.end(), own) == values.end())
+                refuse(fmt::format("expected the value itself, {}, among the choices, found {}", own,
+                                   fmt::join(values, ", ")));
+            return;
+        }
+        const auto number = [](const std::string& text) { return std::strtod(text.c_str(), nullptr); };
+        const double low = number(values[0]), high = number(values[1]), value = number(own);
+        if (low > high)
+            refuse(fmt::format("expected the lower end first, found {} and {}; swap them", values[0], values[1]));
+        if (value < low || value > high)
+            refuse(fmt::format("expected ends around the value, {}, found {} and {}", own, values[0], values[1]));
     }
 
     template <class Integer>
@@ -249,6 +339,8 @@ private:
     toml::table root_;
     std::map<std::string, std::size_t> lines_;  ///< of the values read so far
     std::vector<GpuValue> values_;
+    const toml::node* other_ = nullptr;  ///< to be read in place of the key's own value
+    std::string list_of_others_;         ///< that it is in: "range"
 };
 
 }  // namespace raycache::cachesim

@@ -1,6 +1,7 @@
 #include "tools/program/gpu_details.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,28 @@ namespace {
 
 std::string shape(const cachesim::CacheGeometry& cache) {
     return fmt::format("{}{} x {}", cache.slices > 1 ? fmt::format("{} x ", cache.slices) : "", cache.sets, cache.ways);
+}
+
+/// "may be 55 to 62: why", a line below the source; nothing where the file gives no range.
+std::string range_line(const cachesim::GpuValue& v, std::size_t indent) {
+    if (!v.range) return {};
+    const std::string values = v.range->listed ? fmt::format("{}", fmt::join(v.range->values, ", "))
+                                               : fmt::format("{} to {}", v.range->values[0], v.range->values[1]);
+    return fmt::format("{:{}}may be {}: {}\n", "", indent, values, v.range->source);
+}
+
+nlohmann::ordered_json number_or_text(const std::string& value) {
+    const bool number = !value.empty() && value.find_first_not_of("0123456789") == std::string::npos;
+    return number ? nlohmann::ordered_json(std::stoull(value)) : nlohmann::ordered_json(value);
+}
+
+nlohmann::ordered_json value_json(const cachesim::GpuValue& v) {
+    nlohmann::ordered_json given = {{"value", number_or_text(v.value)}, {"source", v.source}};
+    if (!v.range) return given;
+    nlohmann::ordered_json& list = given[v.range->listed ? "choices" : "range"];
+    for (const std::string& value : v.range->values) list.push_back(number_or_text(value));
+    given["range_source"] = v.range->source;
+    return given;
 }
 
 }  // namespace
@@ -59,8 +82,10 @@ std::string gpu_details_text(std::size_t width) {
         for (const auto& v : all) {
             const std::string value = v.value.size() <= widest_value ? fmt::format("{:>{}}  ", v.value, widths)
                                                                      : fmt::format("{}\n{:{}}", v.value, "", sources);
-            values += cachesim::break_lines(fmt::format("  {:<{}}  {}{}\n", v.key, keys, value, v.source), width,
-                                            v.value.size() <= widest_value ? sources : keys + 4);
+            const std::size_t indent = v.value.size() <= widest_value ? sources : keys + 4;
+            values +=
+                cachesim::break_lines(fmt::format("  {:<{}}  {}{}\n", v.key, keys, value, v.source), width, indent);
+            values += cachesim::break_lines(range_line(v, indent), width, indent);
         }
     }
     return table.text(width) + '\n' +
@@ -78,11 +103,9 @@ std::string gpu_details_json() {
         nlohmann::ordered_json& out = gpus.emplace_back();
         out["name"] = gpu.name;
         out["description"] = gpu.description;
-        for (const auto& [key, value, source] : cachesim::gpu_values(preset.name)) {
-            const bool number = !value.empty() && value.find_first_not_of("0123456789") == std::string::npos;
-            const nlohmann::ordered_json given = {
-                {"value", number ? nlohmann::ordered_json(std::stoull(value)) : nlohmann::ordered_json(value)},
-                {"source", source}};
+        for (const cachesim::GpuValue& value : cachesim::gpu_values(preset.name)) {
+            const std::string& key = value.key;
+            const nlohmann::ordered_json given = value_json(value);
             const auto dot = key.find('.');
             if (dot == std::string::npos) {
                 out[key] = given;

@@ -10,7 +10,7 @@ namespace raycache::tools {
 std::string gpu_details_text(std::size_t width);
 
 /// {"gpu_presets": [{"name", "description", "sms": {"value", "source"}, …, "l1": {"bytes", "sets": {"value", "source"},
-/// …}, …}]}
+/// …}, …}]}; a value with a range has "range" or "choices", and "range_source".
 std::string gpu_details_json();
 
 }  // namespace raycache::tools
