@@ -11,8 +11,8 @@ import unittest
 from support import GPU, LAUNCHES, RAYCACHE, SCENE, ProgramTest, main
 
 BUILD = pathlib.Path(RAYCACHE).resolve().parent
-COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "quality", "sweep", "curve", "counters",
-            "export", "import", "samples", "list"]
+COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "quality", "sweep", "curve", "measure",
+            "counters", "export", "import", "samples", "list"]
 
 
 @unittest.skipUnless((BUILD / "cmake_install.cmake").exists() and shutil.which("cmake"),

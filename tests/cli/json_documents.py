@@ -37,6 +37,7 @@ class JsonDocuments(ProgramTest):
             [*FUSED, "--strategy", wave, *GPU, "--by", "object"], [*FUSED, "--strategy", wave, "--gpu", "v100", "--timed"],
             [*FUSED, "--strategy", wave, *GPU, "--counters", "ncu"],
             ["curve", base, other, *GPU, "--level", "l1"], ["counters", base, *GPU, "--against", "profile.csv"],
+            ["measure", *SCENE, *LAUNCHES, "--repeats", "1", "--modes", "single", "--no-shuffled"],
             ["explain", base, other, *GPU, "--by", "ray"], ["explain", base, other, "--gpu", "xeon-8380", "--by", "bounce"],
             ["quality", *QUALITY, *GPU, "--pairs", "--repeats", "2", "--strategy", "cranley-patterson,micro-jitter"],
             ["sweep", *QUALITY, *GPU, "--mu", "0.5,1"], ["samples"], ["samples", "--strategy", "coherent"],

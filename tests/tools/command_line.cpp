@@ -24,7 +24,7 @@ std::vector<std::string> shortest_line(const tools::Command& command) {
     std::vector<std::string> words{command.name()};
     for (const auto& option : command.options()) {
         const std::string name = option->name();
-        if (!option->is_required() && name != "INPUTS") continue;
+        if (!option->is_required() && name != "INPUTS" && name != "SCENE") continue;
         if (!option->is_positional()) words.push_back(name);
         words.emplace_back(name == "SCENE" || name == "INPUTS" ? "courtyard"
                            : name == "--gpu"                   ? "h100"

@@ -14,6 +14,7 @@ void add_compare(Program&);
 void add_counters(Program&);
 void add_explain(Program&);
 void add_curve(Program&);
+void add_measure(Program&);
 void add_quality(Program&);
 void add_sweep(Program&);
 void add_export(Program&);

@@ -136,6 +136,7 @@ Program::Program() {
     add_counters(*this);
     add_explain(*this);
     add_curve(*this);
+    add_measure(*this);
     add_quality(*this);
     add_sweep(*this);
     add_export(*this);

@@ -1,160 +1,11 @@
 #include "tracer/bvh/embree_scene.hpp"
 
-#include <embree3/rtcore.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-#include "tracer/bvh/near_plane.hpp"
-#include "tracer/scene/cutout.hpp"
-#include "traces/error.hpp"
+#include "tracer/bvh/embree_parts.hpp"
 
 namespace raycache::tracer {
 
-struct EmbreeScene::Impl {
-    /// Some of the scene's triangles. Those that may have holes and those too wide for float are geometries of their
-    /// own: only they need a filter.
-    struct Part {
-        const Impl* owner;
-        std::vector<std::uint32_t> triangles;  ///< scene triangle of each primitive; empty: all, in order
-        std::uint32_t triangle(std::uint32_t primitive) const {
-            return triangles.empty() ? primitive : triangles[primitive];
-        }
-    };
-
-    const Scene* scene_data = nullptr;
-    const TexelLayout* texels = nullptr;
-    enum : std::uint32_t { plain, holed, giant, part_count };
-    Part parts[part_count]{{this, {}}, {this, {}}, {this, {}}};
-    struct Release {
-        void operator()(RTCDevice handle) const { rtcReleaseDevice(handle); }
-        void operator()(RTCScene handle) const { rtcReleaseScene(handle); }
-    };
-    std::unique_ptr<RTCDeviceTy, Release> device;
-    std::unique_ptr<RTCSceneTy, Release> scene;
-
-    Impl(const Scene& data, const TexelLayout* holes) : scene_data(&data), texels(holes) {
-        device.reset(rtcNewDevice("set_affinity=0"));
-        if (!device) throw Error("Embree cannot start on this processor");
-        scene.reset(rtcNewScene(device.get()));
-        rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-        for (std::uint32_t t = 0; t < data.triangle_count(); ++t)
-            if (const auto part = part_of(t); part != plain) parts[part].triangles.push_back(t);
-        const std::size_t filtered = parts[holed].triangles.size() + parts[giant].triangles.size();
-        for (std::uint32_t t = 0; filtered != 0 && t < data.triangle_count(); ++t)
-            if (part_of(t) == plain) parts[plain].triangles.push_back(t);
-        if (filtered < data.triangle_count()) attach(plain, data.triangle_count() - filtered);
-        for (const auto part : {holed, giant})
-            if (!parts[part].triangles.empty()) attach(part, parts[part].triangles.size());
-        // One thread: with more, the order of triangles in the tree, and with it which of two coinciding ones is found,
-        // depends on timing.
-        const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-        tbb::task_arena(1).execute([&] { rtcCommitScene(scene.get()); });
-        if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
-            throw Error(data.name + ": Embree could not build its BVH: is there enough memory?");
-    }
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
-
-    std::uint32_t part_of(std::uint32_t triangle) const {
-        Box box;
-        for (std::size_t k = 0; k < 3; ++k) box.add(vertex(triangle, k));
-        if (max_component(box.upper - box.lower) > scene_data->giant_above) return giant;
-        const Material& material = scene_data->materials[scene_data->material_of[triangle]];
-        return texels != nullptr && material.may_have_holes() ? holed : plain;
-    }
-
-    Vec3 vertex(std::uint32_t triangle, std::size_t k) const {
-        return scene_data->positions[scene_data->indices[3 * std::size_t{triangle} + k]];
-    }
-
-    void attach(std::uint32_t part, std::size_t count) {
-        const RTCGeometry mesh = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        const std::vector<Vec3>& positions = scene_data->positions;
-        // Embree reads 16 bytes of each vertex: its own copy is padded.
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                     3 * sizeof(float), positions.size()));
-        auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-            mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), count));
-        if (vertices == nullptr || indices == nullptr) throw Error("Embree: out of memory");
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            vertices[3 * i] = positions[i].x;
-            vertices[3 * i + 1] = positions[i].y;
-            vertices[3 * i + 2] = positions[i].z;
-        }
-        for (std::uint32_t i = 0; i < count; ++i)
-            std::copy_n(&scene_data->indices[std::size_t{3} * parts[part].triangle(i)], 3,
-                        indices + std::size_t{3} * i);
-        if (part != plain) {
-            const auto filter = part == holed ? skip_holes : skip_behind;
-            rtcSetGeometryUserData(mesh, &parts[part]);
-            rtcSetGeometryIntersectFilterFunction(mesh, filter);
-            rtcSetGeometryOccludedFilterFunction(mesh, filter);
-        }
-        rtcCommitGeometry(mesh);
-        rtcAttachGeometryByID(scene.get(), mesh, part);
-        rtcReleaseGeometry(mesh);
-    }
-
-    static void skip_holes(const RTCFilterFunctionNArguments* arguments) {
-        const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
-        for (unsigned i = 0; i < arguments->N; ++i) {
-            if (arguments->valid[i] == 0) continue;
-            const Scene& scene = *part.owner->scene_data;
-            const std::uint32_t triangle = part.triangle(RTCHitN_primID(arguments->hit, arguments->N, i));
-            if (!scene.materials[scene.material_of[triangle]].may_have_holes()) continue;
-            const Cutout cutout =
-                cutout_at(scene, *part.owner->texels, triangle, RTCHitN_u(arguments->hit, arguments->N, i),
-                          RTCHitN_v(arguments->hit, arguments->N, i));
-            if (!cutout.solid) arguments->valid[i] = 0;
-        }
-    }
-
-    /// Hits of giants that lie behind the ray's start in truth; then what skip_holes() skips.
-    static void skip_behind(const RTCFilterFunctionNArguments* arguments) {
-        const Part& part = *static_cast<const Part*>(arguments->geometryUserPtr);
-        const Impl& impl = *part.owner;
-        for (unsigned i = 0; i < arguments->N; ++i) {
-            if (arguments->valid[i] == 0) continue;
-            RTCRayN* const ray = arguments->ray;
-            const unsigned n = arguments->N;
-            const Vec3d origin(RTCRayN_org_x(ray, n, i), RTCRayN_org_y(ray, n, i), RTCRayN_org_z(ray, n, i));
-            const Vec3d direction(RTCRayN_dir_x(ray, n, i), RTCRayN_dir_y(ray, n, i), RTCRayN_dir_z(ray, n, i));
-            const std::uint32_t triangle = part.triangle(RTCHitN_primID(arguments->hit, n, i));
-            const Vec3d a = impl.vertex(triangle, 0), b = impl.vertex(triangle, 1), c = impl.vertex(triangle, 2);
-            const double reach = std::max({length(a - origin), length(b - origin), length(c - origin)});
-            if (double{RTCRayN_tfar(ray, n, i)} * length(direction) >= double{near_share} * reach) continue;
-            if (!(plane_distance(a, b, c, origin, direction) > double{RTCRayN_tnear(ray, n, i)}))
-                arguments->valid[i] = 0;
-        }
-        if (impl.texels != nullptr) skip_holes(arguments);
-    }
-
-    /// What Embree takes: beyond it asserts, or where those are off answers at random. A ray that rounding or a scene
-    /// of extreme size has spoilt meets nothing.
-    static bool takes(const Ray& ray) {
-        constexpr float most = 1.844e18F;  // FLT_LARGE of Embree 3
-        const auto within = [](Vec3 v) { return std::abs(v.x) < most && std::abs(v.y) < most && std::abs(v.z) < most; };
-        return within(ray.origin) && within(ray.direction) && ray.t_min >= 0 && ray.t_min <= ray.t_max;
-    }
-
-    static RTCRay query(const Ray& ray) {
-        return {ray.origin.x,
-                ray.origin.y,
-                ray.origin.z,
-                ray.t_min,
-                ray.direction.x,
-                ray.direction.y,
-                ray.direction.z,
-                0,
-                ray.t_max,
-                ~0U,
-                0,
-                0};
-    }
+struct EmbreeScene::Impl : EmbreeParts {
+    using EmbreeParts::EmbreeParts;
 };
 
 EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>(scene, nullptr)) {}
@@ -163,24 +14,24 @@ EmbreeScene::EmbreeScene(const Scene& scene, const TexelLayout& texels)
 EmbreeScene::~EmbreeScene() = default;
 
 Hit EmbreeScene::intersect(const Ray& ray) const {
-    if (!Impl::takes(ray)) return {};
+    if (!EmbreeParts::takes(ray)) return {};
     RTCRayHit query;
-    query.ray = Impl::query(ray);
+    query.ray = EmbreeParts::query(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(impl_->scene.get(), &context, &query);
+    rtcIntersect1(impl_->handle(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {query.ray.tfar, query.hit.u, query.hit.v, impl_->parts[query.hit.geomID].triangle(query.hit.primID)};
+    return {query.ray.tfar, query.hit.u, query.hit.v, impl_->triangle(query.hit.geomID, query.hit.primID)};
 }
 
 bool EmbreeScene::occluded(const Ray& ray) const {
-    if (!Impl::takes(ray)) return false;
-    RTCRay query = Impl::query(ray);
+    if (!EmbreeParts::takes(ray)) return false;
+    RTCRay query = EmbreeParts::query(ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(impl_->scene.get(), &context, &query);
+    rtcOccluded1(impl_->handle(), &context, &query);
     return query.tfar < 0;
 }
 
