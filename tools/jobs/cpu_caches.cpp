@@ -5,20 +5,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <thread>
 
+#include "tools/jobs/machine.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
-
-std::string first_line(const std::string& path) {
-    std::ifstream in(path);
-    std::string line;
-    std::getline(in, line);
-    return line;
-}
 
 /// "32K", "1024K", "12"; 0 for what is no number.
 std::uint64_t number(const std::string& text) {

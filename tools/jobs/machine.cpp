@@ -8,14 +8,6 @@
 namespace raycache::tools {
 namespace {
 
-/// The first line of a file; empty where there is none.
-std::string first_line(const char* path) {
-    std::ifstream in(path);
-    std::string line;
-    std::getline(in, line);
-    return line;
-}
-
 /// The value of the first line "KEY : VALUE" in /proc/cpuinfo with one of these keys.
 std::string cpu_name() {
     std::ifstream in("/proc/cpuinfo");
@@ -34,6 +26,13 @@ Machine this_machine() {
     const auto known = [](std::string text) { return text.empty() ? std::string("unknown") : text; };
     return {known(cpu_name()), std::max(1U, std::thread::hardware_concurrency()),
             known(first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"))};
+}
+
+std::string first_line(const std::string& path) {
+    std::ifstream in(path);
+    std::string line;
+    std::getline(in, line);
+    return line;
 }
 
 double thread_seconds() {

@@ -13,6 +13,9 @@ struct Machine {
 };
 Machine this_machine();
 
+/// The first line of a file, such as one of sysfs; empty where there is none.
+std::string first_line(const std::string& path);
+
 /// Processor time of the calling thread so far, in seconds: time in which it did not run is none.
 double thread_seconds();
 

@@ -15,7 +15,7 @@
 namespace raycache::tracer {
 namespace {
 
-constexpr float no_hit = std::numeric_limits<float>::infinity();
+constexpr float never = std::numeric_limits<float>::infinity();
 
 /// Writes down every ray that another traversal walks.
 class LoggingTraversal final : public Traversal {
@@ -30,11 +30,11 @@ public:
 
     void closest(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays, Hit* hits) override {
         walk_->closest(mask, type, bounce, rays, hits);
-        add(mask, type, bounce, rays, [&](unsigned l) { return hits[l].found() ? hits[l].t : no_hit; });
+        add(mask, type, bounce, rays, [&](unsigned l) { return hits[l].found() ? hits[l].t : never; });
     }
     std::uint32_t occluded(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, const Ray* rays) override {
         const std::uint32_t blocked = walk_->occluded(mask, type, bounce, rays);
-        add(mask, type, bounce, rays, [&](unsigned l) { return (blocked >> l & 1U) != 0 ? 0 : no_hit; });
+        add(mask, type, bounce, rays, [&](unsigned l) { return (blocked >> l & 1U) != 0 ? 0 : never; });
         return blocked;
     }
     void read_texels(std::uint32_t, traces::RayType, std::uint8_t, const std::uint32_t*) override {}
