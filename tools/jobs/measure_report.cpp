@@ -56,6 +56,7 @@ std::string place_of(const MeasuredWalk& walk) {
 }
 
 void add_notes(MeasureReport& report) {
+    constexpr std::uint64_t few = 10000;  // one in so many: rounding at edges
     bool one_index = false;
     std::set<std::string> ends_said;
     for (const MeasureRow& row : report.rows) {
@@ -68,7 +69,7 @@ void add_notes(MeasureReport& report) {
                             "chance (1 in 20), is as large as that",
                             walk.strategy, walk.seed, place_of(walk), cachesim::with_interval(row.speed_up, 3)));
         const auto rays = static_cast<std::uint64_t>(std::accumulate(walk.rays.begin(), walk.rays.end(), 0.0));
-        if (walk.other_ends != 0 && walk.order == "warp" && walk.group == "all" &&
+        if (walk.other_ends * few > rays && walk.order == "warp" && walk.group == "all" &&
             ends_said.insert(row_name(walk) + place_of(walk)).second)
             report.notes.push_back(fmt::format("{}, {}: {} of {} rays end elsewhere than in the tracer's own walk",
                                                row_name(walk), place_of(walk), walk.other_ends, rays));
