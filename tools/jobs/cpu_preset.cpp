@@ -112,7 +112,7 @@ void write_timing(Writer& out, const CpuTopology& topology, const CpuTimings& t,
         out.number("l3_mshrs", 48, "assumed: as many as for an L2");
         out.number("l3_mshr_merges", 64, no_limit);
     }
-    const std::string stream = measured + ": one thread reads a buffer in order";
+    const std::string stream = measured + ": one thread reads a buffer in order, 16 B a load";
     out.real("crossbar_bytes_per_cycle", std::max(1.0, (three ? t.l3_gb_s : t.l2_gb_s) / t.mhz * 1e3), stream);
     out.real("l2_bytes_per_cycle", std::max(1.0, t.l2_gb_s / t.mhz * 1e3), stream);
     if (three)

@@ -58,19 +58,15 @@ double least_seconds(const Work& work) {
     return least;
 }
 
-/// Reads all of it, 32 bytes at a time where the compiler's target has such loads, else as wide as it has.
-using Vector = std::uint64_t __attribute__((vector_size(32)));
+/// Reads all of it, 16 bytes at a time, which every processor can: with two loads a cycle at most 32 bytes a cycle.
+using Vector = std::uint64_t __attribute__((vector_size(16)));
 
-#if defined(__x86_64__)
-__attribute__((target_clones("avx2", "default")))
-#endif
-std::uint64_t
-read_all(const char* from, std::uint64_t bytes) {
+std::uint64_t read_all(const char* from, std::uint64_t bytes) {
     Vector sums[4]{};
     for (std::uint64_t at = 0; at + 4 * sizeof(Vector) <= bytes; at += 4 * sizeof(Vector))
         for (unsigned i = 0; i < 4; ++i) sums[i] += reinterpret_cast<const Vector*>(from + at)[i];
     const Vector sum = sums[0] + sums[1] + sums[2] + sums[3];
-    return sum[0] + sum[1] + sum[2] + sum[3];
+    return sum[0] + sum[1];
 }
 
 std::uint64_t passes_over(std::uint64_t bytes) {
