@@ -12,7 +12,7 @@ from support import GPU, LAUNCHES, RAYCACHE, SCENE, ProgramTest, main
 
 BUILD = pathlib.Path(RAYCACHE).resolve().parent
 COMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "explain", "quality", "sweep", "curve", "measure",
-            "counters", "export", "import", "samples", "list"]
+            "counters", "sensitivity", "export", "import", "samples", "list"]
 
 
 @unittest.skipUnless((BUILD / "cmake_install.cmake").exists() and shutil.which("cmake"),

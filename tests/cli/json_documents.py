@@ -28,6 +28,8 @@ class JsonDocuments(ProgramTest):
         other = self.capture("other.rct", "--strategy", "micro-jitter")
         self.path("profile.csv").write_text('"ID","dram__bytes_read.sum"\n"","Kbyte"\n"0","1,024.5"\n')
         self.path("gpu.toml").write_text((ROOT / "cachesim/gpus/v100.toml").read_text())
+        self.path("open.toml").write_text(re.sub(r'(?m)^(?!node_instr)(.*), (?:range|choices) = .* }$', r"\1 }",
+                                                 self.path("gpu.toml").read_text()))
         wave = "cranley-patterson,cranley-patterson+wavefront,cranley-patterson+morton"
         commands = [
             ["list"], ["list", "thread-maps"], ["list", "gpus", "--details"], ["info", base], ["verify", base],
@@ -40,6 +42,7 @@ class JsonDocuments(ProgramTest):
             ["measure", *SCENE, *LAUNCHES, "--repeats", "1", "--modes", "single", "--no-shuffled"],
             ["explain", base, other, *GPU, "--by", "ray"], ["explain", base, other, "--gpu", "xeon-8380", "--by", "bounce"],
             ["quality", *QUALITY, *GPU, "--pairs", "--repeats", "2", "--strategy", "cranley-patterson,micro-jitter"],
+            ["sensitivity", *SCENE, *LAUNCHES, "--bounces", "0", "--gpu", "open.toml", "--samples", "1"],
             ["sweep", *QUALITY, *GPU, "--mu", "0.5,1"], ["samples"], ["samples", "--strategy", "coherent"],
             ["samples", "--table", "discrepancy"], ["samples", "--table", "jitter"]]
         return [(command, self.warns(*command, "--json").json) for command in commands]

@@ -17,6 +17,7 @@ void add_curve(Program&);
 void add_measure(Program&);
 void add_quality(Program&);
 void add_sweep(Program&);
+void add_sensitivity(Program&);
 void add_export(Program&);
 void add_import(Program&);
 void add_samples(Program&);

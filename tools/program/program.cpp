@@ -139,6 +139,7 @@ Program::Program() {
     add_measure(*this);
     add_quality(*this);
     add_sweep(*this);
+    add_sensitivity(*this);
     add_export(*this);
     add_import(*this);
     add_samples(*this);

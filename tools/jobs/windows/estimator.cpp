@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <set>
 #include <utility>
 
 #include "tools/jobs/costs.hpp"
-#include "tracer/sampling/pixel_place.hpp"
-#include "tracer/simt/thread_map.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -19,42 +16,9 @@ namespace {
 constexpr std::uint32_t first_look = 8, fewest_blocks = 2;
 constexpr double all_error = 0.05;  ///< of a 95 % interval
 
-tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
-    return {s.thread_map, s.width, s.height, s.strategy.samples.spp, tracer::interleave_of(s.strategy.parameters)};
-}
-
-Estimator::Case make_case(const tracer::PreparedScene& scene, const WindowedStrategy& strategy,
-                          const WindowChoice& choice, std::uint32_t blocks) {
-    tracer::CaptureSettings settings = strategy.capture;
-    const tracer::LaunchGrid grid = grid_of(settings);
-    const tracer::SampleSet& samples = settings.strategy.samples;
-    constexpr std::uint64_t golden = 0x9e3779b97f4a7c15;  // bits of drawings that follow each other differ widely
-    const std::uint64_t seed = samples.seed ^ choice.drawing * golden;
-    Estimator::Case c{{}, {samples.spp, grid.warps(), grid.samples_per_launch(), seed, choice.sizes}, {}, {}, {}, {},
-                      {}};
-    c.first = c.plan.draw(blocks);
-    for (const std::uint32_t first : c.first)
-        for (std::uint32_t launch = 0; launch < c.plan.launches(); ++launch)
-            settings.first_indices.push_back(first + launch * grid.samples_per_launch());
-    c.capture = std::make_unique<tracer::Capture>(scene.in_layout(strategy.layout), settings);
-    tracer::StrategyName name = tracer::strategy_name(c.capture->header().provenance);
-    name.thread_map = strategy.thread_map;
-    c.name = to_string(name);
-    return c;
-}
-
 std::string stage_name(std::uint32_t end) { return fmt::format("windows of {} blocks", end); }
 
 }  // namespace
-
-std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
-    std::vector<WindowedStrategy> all;
-    const auto captures = launches.captures();
-    for (std::size_t i = 0; i < captures.size(); ++i)
-        all.push_back(
-            {captures[i], launches.cases[i].strategy.thread_map, of_case(launches.scene, launches.cases[i]).layout});
-    return all;
-}
 
 Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<WindowedStrategy>& strategies,
                      const EstimateSettings& settings, const std::vector<cachesim::Gpu>& gpus,
@@ -73,7 +37,7 @@ Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<Windo
         blocks = static_cast<std::uint32_t>(settings.window_count / sizes_.windows);
     }
     for (const WindowedStrategy& strategy : strategies) {
-        Case& c = cases_.emplace_back(make_case(scene, strategy, {sizes_, choice.drawing}, blocks));
+        Case& c = cases_.emplace_back(Case{make_case(scene, strategy, sizes_, choice.drawing, blocks), {}, {}, {}});
         if (!findings) continue;
         c.depth = std::make_unique<cachesim::ElementDepth>(c.capture->header().regions);
         c.findings.resize(gpus.size());
@@ -236,13 +200,7 @@ Predicted Estimator::result() const {
 
 std::vector<Json> Estimator::subject() const {
     std::vector<Json> all;
-    for (const Case& c : cases_) {
-        traces::Header header = c.capture->header();
-        std::set<std::uint32_t> indices;
-        for (std::uint32_t i = 0; i < blocks_ * c.plan.launches(); ++i) indices.insert(header.launches[i]);
-        header.launches.assign(indices.begin(), indices.end());
-        all.push_back(trace_json(header, ""));
-    }
+    for (const Case& c : cases_) all.push_back(c.subject(blocks_));
     return all;
 }
 

@@ -14,17 +14,10 @@
 #include "tools/jobs/windows/estimate.hpp"
 #include "tools/jobs/windows/stop_rule.hpp"
 #include "tools/jobs/windows/window_replay.hpp"
-#include "tracer/capture.hpp"
+#include "tools/jobs/windows/windowed_case.hpp"
 #include "tracer/prepared_scene.hpp"
 
 namespace raycache::tools {
-
-struct WindowedStrategy {
-    tracer::CaptureSettings capture;
-    std::optional<std::string> thread_map;  ///< as the user named it, for tables
-    std::string layout = tracer::default_layout;
-};
-std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
 
 /// What a measurement of estimates themselves may choose (tools/bench/tradeoff).
 struct WindowChoice {
@@ -37,11 +30,7 @@ public:
     using Clock = std::chrono::steady_clock;
 
     /// One of the strategies, and what its windows said.
-    struct Case {
-        std::string name;
-        WindowPlan plan;
-        std::vector<std::uint32_t> first;  ///< sample index of each block
-        std::unique_ptr<tracer::Capture> capture;
+    struct Case : WindowedCase {
         std::unique_ptr<cachesim::ElementDepth> depth;  ///< if findings are wanted
         std::vector<std::vector<BlockResult>> blocks;   ///< by block, then GPU; without findings
         std::vector<cachesim::Findings> findings;       ///< by GPU, of all blocks together; none unless asked for

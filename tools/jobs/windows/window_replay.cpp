@@ -11,76 +11,13 @@
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "tools/jobs/windows/scaled_findings.hpp"
+#include "tools/jobs/windows/warp_stream.hpp"
+#include "tools/jobs/windows/windowed_replay.hpp"
 #include "tools/jobs/windows/work_count.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
-
-using WarpPointer = std::shared_ptr<const traces::WarpTrace>;
-
-/// The launches of a block one after the other, round and round: warps without an end.
-class WarpStream {
-public:
-    WarpStream(const tracer::Capture& capture, std::uint32_t first_launch, std::uint32_t launches)
-        : capture_(capture),
-          worker_(capture.make_worker()),
-          first_launch_(first_launch),
-          launches_(launches),
-          warps_(capture.header().warps_per_launch) {}
-
-    /// The number in the stream of a place, in its first round.
-    std::uint64_t number(const WindowPlace& place) const { return std::uint64_t{place.index} * warps_ + place.warp; }
-    traces::WarpTrace trace(std::uint64_t number) {
-        traces::WarpTrace warp;
-        const auto launch = static_cast<std::uint32_t>(number / warps_ % launches_);
-        capture_.trace_warp(*worker_, first_launch_ + launch, static_cast<std::uint32_t>(number % warps_), warp);
-        return warp;
-    }
-    std::uint32_t warps() const { return warps_; }  ///< of a launch
-    std::uint64_t round() const { return std::uint64_t{launches_} * warps_; }
-
-private:
-    const tracer::Capture& capture_;
-    std::unique_ptr<tracer::Capture::Worker> worker_;
-    std::uint32_t first_launch_, launches_, warps_;
-};
-
-/// A replay that is told which warps to count.
-template <class Replay>
-class WindowedReplay {
-public:
-    /// In warps. `windows`: how many it takes, from the first on. `tail`: behind the last of them.
-    WindowedReplay(Replay&& replay, double warm_up, double counted, std::uint32_t tail, std::uint32_t windows)
-        : replay_(std::move(replay)),
-          warm_up_(std::max(1LL, std::llround(warm_up))),
-          counted_(std::max(1LL, std::llround(counted))),
-          tail_(tail),
-          windows_(windows) {
-        replay_.count_until_here();
-    }
-
-    /// Warps of a window, from the first that is counted.
-    std::int64_t first() const { return -warm_up_; }
-    /// Behind all but the last window the next warm-up keeps the GPU busy.
-    std::int64_t end(std::uint32_t window) const { return counted_ + (window + 1 == windows_ ? tail_ : 0); }
-
-    bool wants(std::uint32_t window, std::int64_t offset) const {
-        return window < windows_ && offset >= first() && offset < end(window);
-    }
-    void push(const WarpPointer& warp, std::uint32_t window, std::int64_t offset) {
-        if (!wants(window, offset)) return;
-        if (offset == first() || offset == counted_) replay_.count_until_here();
-        if (offset == 0) replay_.count_from_here();
-        replay_.push(warp);
-    }
-    Replay& replay() { return replay_; }
-
-private:
-    Replay replay_;
-    std::int64_t warm_up_, counted_, tail_;
-    std::uint32_t windows_;
-};
 
 /// The replays of one GPU.
 class GpuWindows {
@@ -165,17 +102,6 @@ private:
     cachesim::LineFills before_;
     double unfilled_share_ = 1;
 };
-
-/// Returns the warps that it traced. The last group of a picture may be shorter, so that every warp is in one group.
-std::uint64_t count_work(WarpStream& stream, const BlockPlan& plan, const WindowSizes& sizes, WorkCount& work) {
-    std::uint64_t traced = 0;
-    for (const WindowPlace& place : plan.work) {
-        const std::uint32_t group = std::min(sizes.work_warps, stream.warps() - place.warp);
-        for (std::uint32_t i = 0; i < group; ++i) work.add(stream.trace(stream.number(place) + i));
-        traced += group;
-    }
-    return traced;
-}
 
 /// One SM as if it were alone with its share of the launch: of every `sms` CTAs the first, as many before the counted
 /// ones as it holds at once. What its own caches do does not depend on the others.

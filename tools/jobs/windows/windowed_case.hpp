@@ -1,0 +1,39 @@
+// A strategy whose blocks of sample indices are traced in windows.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/jobs/launches.hpp"
+#include "tools/jobs/windows/window_plan.hpp"
+#include "tracer/capture.hpp"
+#include "tracer/prepared_scene.hpp"
+
+namespace raycache::tools {
+
+struct WindowedStrategy {
+    tracer::CaptureSettings capture;
+    std::optional<std::string> thread_map;  ///< as the user named it, for tables
+    std::string layout = tracer::default_layout;
+};
+std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
+
+struct WindowedCase {
+    std::string name;
+    WindowPlan plan;
+    std::vector<std::uint32_t> first;  ///< sample index of each block
+    std::unique_ptr<tracer::Capture> capture;
+
+    std::uint32_t first_launch(std::size_t block) const { return static_cast<std::uint32_t>(block * plan.launches()); }
+    /// trace_json(), with the sample indices of the first `blocks` blocks.
+    Json subject(std::uint32_t blocks) const;
+};
+
+/// `drawing`: another number, other blocks and places of the same samples.
+WindowedCase make_case(const tracer::PreparedScene&, const WindowedStrategy&, const WindowSizes&, std::uint64_t drawing,
+                       std::uint32_t blocks);
+
+}  // namespace raycache::tools
