@@ -30,7 +30,7 @@ nlohmann::ordered_json number_or_text(const std::string& value) {
     return number ? nlohmann::ordered_json(std::stoull(value)) : nlohmann::ordered_json(value);
 }
 
-nlohmann::ordered_json value_json(const cachesim::GpuValue& v) {
+nlohmann::ordered_json entry_json(const cachesim::GpuValue& v) {
     nlohmann::ordered_json given = {{"value", number_or_text(v.value)}, {"source", v.source}};
     if (!v.range) return given;
     nlohmann::ordered_json& list = given[v.range->listed ? "choices" : "range"];
@@ -105,7 +105,7 @@ std::string gpu_details_json() {
         out["description"] = gpu.description;
         for (const cachesim::GpuValue& value : cachesim::gpu_values(preset.name)) {
             const std::string& key = value.key;
-            const nlohmann::ordered_json given = value_json(value);
+            const nlohmann::ordered_json given = entry_json(value);
             const auto dot = key.find('.');
             if (dot == std::string::npos) {
                 out[key] = given;
