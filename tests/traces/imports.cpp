@@ -10,7 +10,6 @@
 #include "files.hpp"
 #include "traces/accelsim/import.hpp"
 #include "traces/addresses/address_stream.hpp"
-#include "traces/addresses/guess.hpp"
 #include "traces/bytes.hpp"
 #include "traces/reader.hpp"
 #include "traces/verify.hpp"
@@ -370,35 +369,4 @@ TEST_CASE("addresses of Dinero, CSV and 64-bit words are reads of one lane") {
     CHECK_THAT(refusal([&] { import(AddressFormat::csv, "time,what\n1,2\n"); }), Contains("a column address"));
     CHECK_THAT(refusal([&] { import(AddressFormat::dinero, "0 7f5\n0 xyz\n"); }), Contains("line 2"));
     CHECK_THAT(refusal([&] { import(AddressFormat::dinero, "1 20\n"); }), Contains("expected reads"));
-}
-
-TEST_CASE("a file of another kind is refused by what it looks like") {
-    Case c;
-    const auto guess = [&](const std::string& text) {
-        write_text(c.path, text);
-        return guess_trace_kind(c.path);
-    };
-    CHECK(guess("0 7f5000000000\n1 20\n") == TraceKind::dinero);
-    CHECK(guess("time,obj,size\n") == TraceKind::csv);
-    CHECK(guess("RTWARP01....") == TraceKind::rtwarp);
-    CHECK(guess(head()) == TraceKind::accel_sim);
-    CHECK(guess("kernel-1.traceg.xz\n") == TraceKind::accel_sim);
-    const auto says = [&](const std::string& text) { return refusal([&] { guess(text); }); };
-    CHECK_THAT(says(""), Contains("an empty file"));
-    CHECK_THAT(says("I  04001090,3\n L 1ffefffe50,8\n"), Contains("Lackey"));
-    CHECK_THAT(says("==12== Lackey, an example Valgrind tool\n"), Contains("Lackey"));
-    CHECK_THAT(says("------ NVBit ------\nMEMTRACE: CTX 0x1 - LDG.E - 0x10\n"), Contains("mem_trace"));
-    CHECK_THAT(says(std::string("RCTRACE\x1a\x02\0\0\0", 12)), Contains("a trace of raycache"));
-    std::string oracle;
-    for (unsigned i = 1; i < 100; ++i) {
-        Bytes record;
-        append(record, i / 3);
-        append(record, std::uint64_t{i * 7919});
-        append(record, std::uint32_t{4096});
-        append(record, ~std::uint64_t{0});
-        oracle.append(record.begin(), record.end());
-    }
-    CHECK_THAT(says(oracle), Contains("oracleGeneral"));
-    CHECK_THAT(says(std::string("\x40\0\0\0\x50\x7f\0\0\x40\0\0\0\x50\x7f\0\0", 16)), Contains("--format u64"));
-    CHECK_THAT(says("once upon a time\n"), Contains("text of another kind"));
 }
