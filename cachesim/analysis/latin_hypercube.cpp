@@ -16,7 +16,7 @@ namespace {
 /// In [0, 1), of 53 bits. The distributions of the standard library differ from one implementation to the next.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-double number_of(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
+double number_in(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 
 std::size_t below(std::mt19937_64& random, std::size_t bound) {
     return static_cast<std::size_t>(uniform(random) * static_cast<double>(bound));
@@ -42,7 +42,7 @@ std::string value_at(const GpuRange& range, double x) {
         const auto count = static_cast<double>(range.values.size());
         return range.values[std::min(static_cast<std::size_t>(x * count), range.values.size() - 1)];
     }
-    const double low = number_of(range.values[0]), high = number_of(range.values[1]);
+    const double low = number_in(range.values[0]), high = number_in(range.values[1]);
     const auto is_whole = [](const std::string& text) { return text.find_first_not_of("0123456789") == text.npos; };
     if (is_whole(range.values[0]) && is_whole(range.values[1]))
         return fmt::format("{:.0f}", std::min(high, std::floor(low + x * (high - low + 1))));
