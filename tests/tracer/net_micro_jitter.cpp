@@ -37,10 +37,24 @@ std::uint32_t shared_bits(const StrategySettings& settings, std::uint32_t dimens
 
 unsigned count(std::uint32_t mask) { return static_cast<unsigned>(std::popcount(mask)); }
 
+/// Whether each joint cell of these leading bits of one pixel's points holds equally many.
+bool equal_cells(const SamplingStrategy& strategy, unsigned m, std::uint32_t first, unsigned a, unsigned b) {
+    if (a + b > m) return false;  // more cells than points
+    std::vector<std::uint32_t> cells(std::size_t{1} << (a + b));
+    for (std::uint32_t i = 0; i < 1U << m; ++i) {
+        const auto base = strategy.base_point(i);
+        const std::uint64_t x = strategy.value(base[first], 77, i, first),
+                            y = strategy.value(base[first + 1], 77, i, first + 1);
+        ++cells[(x >> (32 - a)) << b | (y >> (32 - b))];
+    }
+    return std::all_of(cells.begin(), cells.end(), [&](std::uint32_t n) { return n == 1U << (m - a - b); });
+}
+
 }  // namespace
 
 TEST_CASE(
-    "net-micro-jitter: each joint cell of the free bits holds equally many points of a pixel, for all N to 2^16") {
+    "net-micro-jitter: joint cells of the free bits hold equally many points of a pixel, for all N to 2^16, and "
+    "those of one bit more do not") {
     for (const std::string sequence : {"sobol", "sobol-owen-02", "sobol-owen-4d", "pmj02"})
         for (const std::string share : {"camera", "light0", "first-bounce"})
             for (unsigned m = 0; m <= 16; ++m) {
@@ -50,18 +64,10 @@ TEST_CASE(
                 const SamplingStrategy strategy(settings, dimensions);
                 INFO(sequence << " " << share << " m " << m << " bits " << a << " " << b);
                 REQUIRE(strategy.warnings().empty());
-                std::vector<std::uint32_t> cells(std::size_t{1} << (a + b));
-                for (std::uint32_t i = 0; i < 1U << m; ++i) {
-                    const auto base = strategy.base_point(i);
-                    const std::uint64_t x = strategy.value(base[first], 77, i, first),
-                                        y = strategy.value(base[first + 1], 77, i, first + 1);
-                    ++cells[(x >> (32 - a)) << b | (y >> (32 - b))];
-                }
-                REQUIRE(
-                    std::all_of(cells.begin(), cells.end(), [&](std::uint32_t n) { return n == 1U << (m - a - b); }));
-                // One bit more has no such cells, in either dimension.
-                if (sequence != "sobol-owen-02" && sequence != "pmj02") continue;
-                REQUIRE(a + b == m);  // pairs that are (0, 2)-sequences: all there are
+                REQUIRE(equal_cells(strategy, m, first, a, b));
+                REQUIRE_FALSE(equal_cells(strategy, m, first, a + 1, b));
+                REQUIRE_FALSE(equal_cells(strategy, m, first, a, b + 1));
+                if (sequence == "sobol-owen-02" || sequence == "pmj02") REQUIRE(a + b == m);  // (0, 2)-sequences
             }
 }
 
@@ -97,23 +103,30 @@ TEST_CASE(
           "share=first-bounce bits=0 free=6");
 }
 
-TEST_CASE("net-micro-jitter: more bits than are free are warned of, as are pairs that are not free together") {
-    for (const auto& settings :
-         {settings_of("sobol-owen-02", 6, "first-bounce", 7), settings_of("sobol-owen-02", 6, "first-bounce+light0")}) {
+TEST_CASE("net-micro-jitter: bits that are not free are warned of: too many, of pairs of different nets, dealt badly") {
+    const auto warned = [](const StrategySettings& settings) {
         const auto lines = SamplingStrategy(settings, dimensions).warnings();
-        REQUIRE(lines.size() == 1);
-        CHECK_THAT(lines.front(), Catch::Contains("where 6 are free"));
-    }
-    CHECK(SamplingStrategy(settings_of("sobol-owen-02", 6, "first-bounce", 6), dimensions).warnings().empty());
-}
-
-TEST_CASE("net-micro-jitter: in sequences whose first bounce is a worse net fewer bits are free") {
-    unsigned lowered = 0;
+        REQUIRE(lines.size() <= 1);
+        if (!lines.empty()) CHECK_THAT(lines.front(), Catch::Contains("not free together (of one pair"));
+        return !lines.empty();
+    };
+    CHECK(warned(settings_of("sobol-owen-02", 6, "first-bounce", 7)));
+    CHECK_FALSE(warned(settings_of("sobol-owen-02", 6, "first-bounce", 6)));
+    CHECK(warned(settings_of("sobol-owen-02", 6, "first-bounce+light0")));
+    CHECK(warned(settings_of("sobol-owen-02", 6, "first-bounce+light0", 4)));  // nothing is known of two nets together
+    CHECK_FALSE(warned(settings_of("sobol-owen-4d", 6, "camera+light0", 4)));  // one net of four dimensions
+    CHECK_FALSE(warned(settings_of("sobol-owen-02", 6, "first-bounce+light0", 0)));
+    // Where a pair is a worse net, as many bits as are free may be dealt so that they are not.
+    unsigned badly = 0;
     for (unsigned m = 2; m <= 16; ++m) {
-        const auto settings = settings_of("sobol", m);
-        lowered += count(shared_bits(settings, 4)) + count(shared_bits(settings, 5)) < m;
+        const auto free = settings_of("sobol", m, "8");
+        const unsigned all = count(shared_bits(free, 8)) + count(shared_bits(free, 9)), each = all / 2;
+        const auto dealt = settings_of("sobol", m, "8", static_cast<int>(all));
+        const bool is_free = equal_cells(SamplingStrategy(dealt, dimensions), m, 8, all - each, each);
+        CHECK(warned(dealt) == !is_free);
+        badly += !is_free;
     }
-    CHECK(lowered > 0);
+    CHECK(badly > 0);
 }
 
 TEST_CASE("net-micro-jitter: what is no pair of dimensions is refused with what is") {

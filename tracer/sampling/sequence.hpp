@@ -24,8 +24,8 @@ public:
     /// dimensions are no nets in base 2.
     virtual std::uint32_t net_dimensions() const { return 0; }
     /// Whether the first 2^m points fall equally often into each cell that the leading bits[i] bits of the dimensions
-    /// first + i make together. Precondition: with s = bits.size(), net_dimensions() and first are multiples of s, or
-    /// net_dimensions() is 0; m <= 32.
+    /// first + i make together. Precondition: these dimensions are of one net, first / net_dimensions() that of the
+    /// last; or net_dimensions() is 0; m <= 32.
     virtual bool equal_cells(std::uint32_t /*first*/, std::span<const unsigned> /*bits*/, unsigned /*m*/) const {
         return false;
     }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <numeric>
+#include <span>
 
 #include "traces/error.hpp"
 
@@ -26,12 +28,21 @@ std::uint32_t parse_pair(const std::string& word, const std::string& whole) {
     return first;
 }
 
-/// Of that pair: leading bits of its first and second dimension.
+/// Of that pair: leading bits of its first and second dimension. Both alike, as many as are free; then what more of one.
 std::array<unsigned, 2> free_bits_of(std::uint32_t first, unsigned m, const Sequence& sequence) {
     const unsigned k = sequence.equal_cell_bits(first, 2, m);
-    for (const std::array<unsigned, 2>& longer : {std::array{k + 1, k}, std::array{k, k + 1}})
-        if (sequence.equal_cells(first, longer, m)) return longer;
-    return {k, k};
+    const auto longer = [&](unsigned which) {
+        std::array<unsigned, 2> bits{k, k};
+        while (bits[which] < m) {
+            ++bits[which];
+            if (sequence.equal_cells(first, bits, m)) continue;
+            --bits[which];
+            break;
+        }
+        return bits;
+    };
+    const std::array<unsigned, 2> a = longer(0), b = longer(1);
+    return b[1] > a[0] ? b : a;
 }
 
 }  // namespace
@@ -55,36 +66,47 @@ SharedPairs::SharedPairs(const std::vector<std::uint32_t>& pairs, int bits, cons
     require_net("net-micro-jitter", sequence, 2);
     const unsigned m = require_power_of_two("net-micro-jitter", samples.spp);
     const std::uint32_t used = samples.dimensions == 0 ? sequence.dimensions() : samples.dimensions;
-    std::vector<std::uint32_t> shared;  // dimensions
+    std::vector<std::uint32_t> dimensions;
     for (const std::uint32_t first : pairs) {
         if (first + 1 >= used) continue;
         const std::array<unsigned, 2> free = free_bits_of(first, m, sequence);
-        free_ = std::max(free_, free[0] + free[1]);
+        most_free_ = std::max(most_free_, free[0] + free[1]);
+        bits_.resize(std::max<std::size_t>(bits_.size(), first + 2));
         for (std::uint32_t i = 0; i < 2; ++i) {
-            shared.push_back(first + i);
-            if (bits < 0) share(first + i, free[i]);
+            dimensions.push_back(first + i);
+            if (bits < 0) bits_[first + i] = free[i];
         }
     }
-    if (bits < 0 || shared.empty()) return;
-    const auto dealt = static_cast<unsigned>(bits), places = static_cast<unsigned>(shared.size());
-    for (unsigned i = 0; i < places; ++i)
-        share(shared[i], std::min(32U, dealt / places + (i < dealt % places ? 1 : 0)));
+    for (int dealt = 0; dealt < bits && !dimensions.empty(); ++dealt) {
+        unsigned& next = bits_[dimensions[static_cast<unsigned>(dealt) % dimensions.size()]];
+        next = std::min(next + 1, 32U);
+    }
+    for (const unsigned b : bits_) masks_.push_back(b == 0 ? 0 : ~0U << (32 - b));
+    is_free_ = is_free(m, sequence);
 }
 
-void SharedPairs::share(std::uint32_t dimension, unsigned bits) {
-    if (masks_.size() <= dimension) masks_.resize(dimension + 1);
-    masks_[dimension] = bits == 0 ? 0 : ~0U << (32 - bits);
-    bits_ += bits;
+bool SharedPairs::is_free(unsigned m, const Sequence& sequence) const {
+    const auto some = [](unsigned bits) { return bits != 0; };
+    const auto from = std::find_if(bits_.begin(), bits_.end(), some);
+    if (from == bits_.end()) return true;
+    const auto first = static_cast<std::uint32_t>(from - bits_.begin()) / 2 * 2;
+    const auto end =
+        static_cast<std::uint32_t>(std::find_if(bits_.rbegin(), bits_.rend(), some).base() - bits_.begin());
+    // Of dimensions of different nets nothing is known together.
+    if (first / sequence.net_dimensions() != (end - 1) / sequence.net_dimensions()) return false;
+    return sequence.equal_cells(first, std::span(bits_).subspan(first, end - first), m);
 }
 
-std::string SharedPairs::parameters() const { return fmt::format("bits={} free={}", bits_, free_); }
+unsigned SharedPairs::bits() const { return std::accumulate(bits_.begin(), bits_.end(), 0U); }
+
+std::string SharedPairs::parameters() const { return fmt::format("bits={} free={}", bits(), most_free_); }
 
 std::string SharedPairs::warning() const {
-    if (bits_ <= free_) return {};
+    if (is_free_) return {};
     return fmt::format(
-        "net-micro-jitter shares {} bits of its points between pixels where {} are free: beyond them neighbouring "
-        "pixels err together, and the mean may be off (raycache quality: R8, z)",
-        bits_, free_);
+        "net-micro-jitter shares {} bits of its points between pixels that are not free together (of one pair {} are): "
+        "neighbouring pixels err together, and the mean may be off (raycache quality: R8, z)",
+        bits(), most_free_);
 }
 
 }  // namespace raycache::tracer

@@ -29,20 +29,20 @@ public:
     SharedPairs(const std::vector<std::uint32_t>& pairs, int bits, const SampleSet&, const Sequence&);
 
     std::uint32_t mask(std::uint32_t dimension) const { return dimension < masks_.size() ? masks_[dimension] : 0; }
-    unsigned bits() const { return bits_; }  ///< shared, of all dimensions together
-    /// What may be shared at no cost: the largest number for which each joint cell of a pixel's N points holds equally
-    /// many. Of several pairs that of the best one: together they have no more than log2(N).
-    unsigned free_bits() const { return free_; }
-    /// "bits=6 free=6"
+    unsigned bits() const;  ///< shared, of all dimensions together
+    /// "bits=6 free=6"; free: what the best of the pairs may share at no cost by itself. The joint cells of these bits
+    /// hold equally many of a pixel's N points: of both dimensions alike, then as many more of one. At most log2(N).
     std::string parameters() const;
-    /// Where more is shared than is free.
+    /// Where the joint cells of all shared bits do not hold equally many points, or that is not known.
     std::string warning() const;
 
 private:
-    void share(std::uint32_t dimension, unsigned bits);
+    bool is_free(unsigned m, const Sequence&) const;
 
+    std::vector<unsigned> bits_;  ///< by dimension
     std::vector<std::uint32_t> masks_;
-    unsigned bits_ = 0, free_ = 0;
+    unsigned most_free_ = 0;
+    bool is_free_ = true;
 };
 
 }  // namespace raycache::tracer
