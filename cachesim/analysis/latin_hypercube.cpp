@@ -7,7 +7,8 @@
 #include <cstdlib>
 #include <numeric>
 #include <random>
-#include <utility>
+
+#include "traces/shuffle.hpp"
 
 namespace raycache::cachesim {
 
@@ -30,7 +31,7 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
     std::vector<std::size_t> strata(points);
     for (std::size_t d = 0; d < dimensions; ++d) {
         std::iota(strata.begin(), strata.end(), std::size_t{0});
-        for (std::size_t i = points; i > 1; --i) std::swap(strata[i - 1], strata[below(random, i)]);
+        shuffle_by(strata, [&](std::size_t n) { return below(random, n); });
         for (std::size_t i = 0; i < points; ++i)
             all[i][d] = (static_cast<double>(strata[i]) + uniform(random)) / static_cast<double>(points);
     }

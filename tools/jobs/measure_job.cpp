@@ -13,6 +13,7 @@
 #include "tools/jobs/timed_walk.hpp"
 #include "traces/error.hpp"
 #include "traces/memory_budget.hpp"
+#include "traces/shuffle.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -158,7 +159,7 @@ private:
     void shuffle(std::size_t walks) {
         order_.resize(walks);
         for (std::size_t i = 0; i < walks; ++i) order_[i] = i;
-        for (std::size_t left = walks; left > 1; --left) std::swap(order_[left - 1], order_[random_() % left]);
+        shuffle_by(order_, [&](std::size_t n) { return random_() % n; });
     }
 
     MeasuredWalk& row_of(const LoggedRays& rays, std::size_t mode, const HardwareCounters& counters) {

@@ -14,6 +14,7 @@
 #include <random>
 
 #include "tools/jobs/machine.hpp"
+#include "traces/shuffle.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -102,7 +103,7 @@ double chase_ns(std::uint64_t bytes, std::uint32_t line_bytes) {
     std::vector<std::uint32_t> order(lines);
     std::iota(order.begin(), order.end(), 0U);
     std::mt19937_64 random(1);
-    for (std::uint64_t left = lines; left > 1; --left) std::swap(order[left - 1], order[random() % left]);
+    shuffle_by(order, [&](std::size_t n) { return random() % n; });
     const auto place = [&](std::uint64_t i) {
         return reinterpret_cast<void**>(buffer.data() + std::uint64_t{order[i % lines]} * line_bytes);
     };

@@ -8,10 +8,9 @@
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/inputs.hpp"
-#include "tools/program/json_output.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
-#include "tools/program/width_option.hpp"
+#include "tools/program/table_output.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -29,9 +28,7 @@ struct CurveArguments {
     std::string level = "all";
     std::vector<std::uint64_t> sets;
     std::vector<std::string> sizes, policies;
-    JsonOption json;
-    WidthOption width;
-    bool csv = false;
+    TableOutput output;
     double rate = 1;
     ThreadOptions threads;
 };
@@ -39,15 +36,13 @@ struct CurveArguments {
 void publish(const CurveArguments& o, CurveResult result, const std::vector<std::uint64_t>& sizes) {
     const std::string baseline = baseline_strategy(result.series, o.baseline);
     const cachesim::CurveReport report = cachesim::make_curve_report(std::move(result.series), baseline, sizes);
-    print(o.json  ? o.json.document(cachesim::to_json(report), result.subject)
-          : o.csv ? cachesim::to_csv(report)
-                  : cachesim::to_text(report, o.width.columns()));
+    o.output.publish(report, result.subject);
 }
 
 Action plan(const std::shared_ptr<CurveArguments>& o, const Command* command) {
     const Inputs inputs = o->inputs.sorted(*command);
     o->scene.source = inputs.scene;
-    if (o->json && o->csv) throw UsageError("--json and --csv together; expected one of them");
+    o->output.check();
     CurveJob job;
     job.gpu = o->gpu;
     job.sets = o->sets;
@@ -124,9 +119,7 @@ void add_curve(Program& program) {
         ->add_option("--baseline", o->baseline,
                      "strategy whose equivalent sizes are found; default: cranley-patterson where it is among them")
         ->check(strategy_name_check());
-    o->json.add(*command);
-    o->width.add(*command);
-    command->add_flag("--csv", o->csv, "print CSV")->excludes({"--json"});
+    o->output.add(*command);
     command->group("");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

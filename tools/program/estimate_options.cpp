@@ -8,8 +8,6 @@
 namespace raycache::tools {
 namespace {
 
-constexpr const char* window_resolution = "1920x1080";
-
 bool is_given(const Command& command, const char* name) {
     const Option* option = command.find_option(name);
     return option && option->given();

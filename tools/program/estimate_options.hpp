@@ -24,6 +24,9 @@ struct EstimateOptions {
     EstimateSettings settings(const Command&, LaunchSettings&, std::string& why_exact) const;
 };
 
+/// Of the picture whose windows are replayed, where the user gives none.
+inline constexpr const char* window_resolution = "1920x1080";
+
 /// "2%", "0.5 %": 0.02, 0.005. Throws UsageError.
 double parse_percentage(const std::string& text, const std::string& what);
 

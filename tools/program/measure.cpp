@@ -8,10 +8,9 @@
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
-#include "tools/program/json_output.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
-#include "tools/program/width_option.hpp"
+#include "tools/program/table_output.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -30,9 +29,8 @@ struct MeasureArguments {
     std::vector<std::string> modes;
     std::uint32_t repeats = 3;
     bool no_shuffled = false;
-    JsonOption json;
-    WidthOption width;
-    bool csv = false, preset = false;
+    TableOutput table;
+    bool preset = false;
     std::string output;
     ThreadOptions threads;
 };
@@ -54,7 +52,8 @@ std::string today() {
 Action plan_preset(const std::shared_ptr<MeasureArguments>& o, const Command* command) {
     if (!o->scene.source.empty())
         throw UsageError(fmt::format("--preset beside the scene '{}'; expected --preset alone", o->scene.source));
-    if (o->json || o->csv) throw UsageError("--preset with --json or --csv; expected neither: it writes a GPU file");
+    if (o->table.json || o->table.csv)
+        throw UsageError("--preset with --json or --csv; expected neither: it writes a GPU file");
     return [o, command] {
         for (const std::string& line : idle_besides(*command, {"--preset", "--output", "--threads"},
                                                     "--preset measures the processor, not strategies"))
@@ -76,6 +75,7 @@ Action plan_preset(const std::shared_ptr<MeasureArguments>& o, const Command* co
 Action plan(const std::shared_ptr<MeasureArguments>& o, const Command* command) {
     if (o->preset) return plan_preset(o, command);
     if (o->scene.source.empty()) throw UsageError("SCENE is missing; see 'raycache measure --help'");
+    o->table.check();
     if (!o->output.empty()) throw UsageError("--output without --preset; expected both");
     MeasureJob job;
     job.scene = o->scene;
@@ -97,9 +97,7 @@ Action plan(const std::shared_ptr<MeasureArguments>& o, const Command* command) 
         Progress progress("measure");
         const MeasureReport report = make_measure_report(run(job, progress));
         for (const std::string& line : report.warnings) progress.warn(line);
-        print(o->json  ? o->json.document(to_json(report), report.result.subject)
-              : o->csv ? to_csv(report)
-                       : to_text(report, o->width.columns()));
+        o->table.publish(report, report.result.subject);
     };
 }
 
@@ -140,9 +138,7 @@ void add_measure(Program& program) {
     command->add_flag("--preset", o->preset,
                       "instead: measure the caches of this processor and print it as a GPU file, for --gpu FILE.toml");
     command->add_option("-o,--output", o->output, "with --preset: the file")->type_name("FILE.toml");
-    o->json.add(*command);
-    o->width.add(*command);
-    command->add_flag("--csv", o->csv, "print CSV")->excludes({"--json"});
+    o->table.add(*command);
     command->group("");
     o->scene.add_view(*command);
     command->remove_option("--layout");

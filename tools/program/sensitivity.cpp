@@ -5,18 +5,16 @@
 #include "tools/jobs/sensitivity_job.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
+#include "tools/program/estimate_options.hpp"
 #include "tools/program/gpu_options.hpp"
 #include "tools/program/idle_options.hpp"
-#include "tools/program/json_output.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
-#include "tools/program/width_option.hpp"
+#include "tools/program/table_output.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
 namespace {
-
-constexpr const char* picture_of_windows = "1920x1080";
 
 struct SensitivityArguments {
     SceneOptions scene;
@@ -27,9 +25,7 @@ struct SensitivityArguments {
     GpuOptions gpu;
     std::uint32_t windows = 16, varied_windows = 8, sms = 0, samples = 32;
     std::uint64_t hypercube_seed = 1;
-    JsonOption json;
-    WidthOption width;
-    bool csv = false;
+    TableOutput output;
     ThreadOptions threads;
 };
 
@@ -39,7 +35,7 @@ SensitivityJob job_of(const SensitivityArguments& o, const Command& command) {
     job.launches.sampling = o.sampling;
     job.whole_launches = command.find_option("--trace-samples")->given();
     if (!job.whole_launches && !command.find_option("--resolution")->given())
-        job.launches.sampling.resolution = picture_of_windows;
+        job.launches.sampling.resolution = window_resolution;
     for (const std::string& strategy : o.strategies)
         job.launches.cases.push_back({tracer::parse_strategy_name(strategy), o.sequence, o.spp, {}, {}});
     job.gpus = o.gpu.names;
@@ -59,13 +55,11 @@ void publish(const SensitivityArguments& o, const SensitivityJob& job, Sensitivi
                         ? fmt::format("{} whole launches", job.launches.sampling.trace_samples)
                         : fmt::format("{} windows, {} with other values", job.windows, job.varied_windows);
     if (job.variations.sms != 0) report.model = fmt::format("scale model of {} SMs", job.variations.sms);
-    print(o.json  ? o.json.document(cachesim::to_json(report), result.subject)
-          : o.csv ? cachesim::to_csv(report)
-                  : cachesim::to_text(report, o.width.columns()));
+    o.output.publish(report, result.subject);
 }
 
 Action plan(const std::shared_ptr<SensitivityArguments>& o, const Command* command) {
-    if (o->json && o->csv) throw UsageError("--json and --csv together; expected one of them");
+    o->output.check();
     const SensitivityJob job = job_of(*o, *command);
     job.check();
     return [o, command, job] {
@@ -120,9 +114,7 @@ void add_sensitivity(Program& program) {
     command->add_option("--set", o->gpu.changes, "KEY=VALUE: another value of every GPU, which is then not varied")
         ->repeated()
         ->type_name("KEY=VALUE");
-    o->json.add(*command);
-    o->width.add(*command);
-    command->add_flag("--csv", o->csv, "print CSV: a line for each point")->excludes({"--json"});
+    o->output.add(*command, "print CSV: a line for each point");
     command->group("");
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);

@@ -32,7 +32,22 @@ public:
     /// What Embree takes: beyond it asserts, or where those are off answers at random. A ray that rounding or a scene
     /// of extreme size has spoilt meets nothing.
     static bool takes(const Ray&);
-    static RTCRay query(const Ray&);
+
+    /// rtcIntersect1: whether there is a hit, which `found` then has.
+    bool closest(const Ray& ray, RTCIntersectContext& context, RTCRayHit& found) const {
+        if (!takes(ray)) return false;
+        found.ray = query(ray);
+        found.hit.geomID = found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(handle(), &context, &found);
+        return found.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+    /// rtcOccluded1
+    bool occluded(const Ray& ray, RTCIntersectContext& context) const {
+        if (!takes(ray)) return false;
+        RTCRay asked = query(ray);
+        rtcOccluded1(handle(), &context, &asked);
+        return asked.tfar < 0;
+    }
 
 private:
     /// Some of the scene's triangles. Those that may have holes and those too wide for float are geometries of their
@@ -50,6 +65,7 @@ private:
         void operator()(RTCScene handle) const { rtcReleaseScene(handle); }
     };
 
+    static RTCRay query(const Ray&);
     std::uint32_t part_of(std::uint32_t triangle) const;
     Vec3 vertex(std::uint32_t triangle, std::size_t k) const;
     void attach(std::uint32_t part, std::size_t count);

@@ -11,6 +11,8 @@
 
 namespace raycache::tracer {
 
+class EmbreeParts;
+
 /// Both arguments must outlive it. The tree is built on one thread, so equal scenes give equal answers, also where
 /// triangles coincide.
 class EmbreeScene {
@@ -27,8 +29,7 @@ public:
     bool occluded(const Ray&) const;  ///< rtcOccluded1
 
 private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<EmbreeParts> parts_;
 };
 
 }  // namespace raycache::tracer

@@ -167,15 +167,9 @@ void EmbreeWalker::closest(std::span<const Ray> rays, const WalkMode& mode, floa
     if (mode.width == 8) return closest_packets<8>(scene, rays, mode, ends);
     if (mode.width == 16) return closest_packets<16>(scene, rays, mode, ends);
     RTCIntersectContext context = context_of(mode);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        ends[i] = no_hit;
-        if (!EmbreeParts::takes(rays[i])) continue;
-        RTCRayHit query;
-        query.ray = EmbreeParts::query(rays[i]);
-        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &query);
-        if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) ends[i] = query.ray.tfar;
-    }
+    RTCRayHit found;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        ends[i] = scene_->closest(rays[i], context, found) ? found.ray.tfar : no_hit;
 }
 
 void EmbreeWalker::occluded(std::span<const Ray> rays, const WalkMode& mode, float* ends) const {
@@ -184,13 +178,7 @@ void EmbreeWalker::occluded(std::span<const Ray> rays, const WalkMode& mode, flo
     if (mode.width == 8) return occluded_packets<8>(scene, rays, mode, ends);
     if (mode.width == 16) return occluded_packets<16>(scene, rays, mode, ends);
     RTCIntersectContext context = context_of(mode);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        ends[i] = no_hit;
-        if (!EmbreeParts::takes(rays[i])) continue;
-        RTCRay query = EmbreeParts::query(rays[i]);
-        rtcOccluded1(scene, &context, &query);
-        if (query.tfar < 0) ends[i] = 0;
-    }
+    for (std::size_t i = 0; i < rays.size(); ++i) ends[i] = scene_->occluded(rays[i], context) ? 0 : no_hit;
 }
 
 }  // namespace raycache::tracer

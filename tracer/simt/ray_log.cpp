@@ -11,6 +11,7 @@
 #include <random>
 
 #include "tracer/simt/make_traversal.hpp"
+#include "traces/shuffle.hpp"
 
 namespace raycache::tracer {
 namespace {
@@ -81,7 +82,7 @@ void append(RayLog& log, const RayLog& part) {
 
 }  // namespace
 
-RayLog log_rays(const Capture& capture, std::uint32_t launch, const Progress& progress) {
+RayLog log_rays(const Capture& capture, std::uint32_t launch) {
     constexpr std::uint32_t part_warps = 64;
     const std::uint32_t warps = capture.header().warps_per_launch;
     std::vector<RayLog> parts((warps + part_warps - 1) / part_warps);
@@ -98,7 +99,6 @@ RayLog log_rays(const Capture& capture, std::uint32_t launch, const Progress& pr
             const std::uint32_t mask = capture.lane_jobs(launch, warp, jobs);
             if (mask != 0) worker.integrator->trace(mask, jobs, radiance);
         }
-        if (progress) progress(end - first, parts[part].rays.size());
     });
     RayLog log;
     std::size_t rays = 0, batches = 0;
@@ -137,8 +137,7 @@ RayLog shuffled(const RayLog& log, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     for (const auto& from : places) {
         std::vector<std::uint64_t> to = from;
-        // Fisher and Yates; std::shuffle draws otherwise in every standard library.
-        for (std::size_t left = to.size(); left > 1; --left) std::swap(to[left - 1], to[random() % left]);
+        shuffle_by(to, [&](std::size_t n) { return random() % n; });
         for (std::size_t i = 0; i < from.size(); ++i) {
             out.rays[to[i]] = log.rays[from[i]];
             out.ends[to[i]] = log.ends[from[i]];

@@ -37,8 +37,8 @@ struct RayLog {
 };
 
 /// A launch of a megakernel, traced on all threads of the current TBB arena; the result does not depend on their
-/// number. `progress` is called from any thread.
-RayLog log_rays(const Capture&, std::uint32_t launch, const Progress& progress = {});
+/// number.
+RayLog log_rays(const Capture&, std::uint32_t launch);
 
 /// The batches for which `is_wanted` holds, and their rays.
 RayLog only(const RayLog&, const std::function<bool(const RayBatch&)>& is_wanted);

@@ -1,5 +1,6 @@
-// Reads the warp instructions of an Accel-Sim trace: its loads of global memory and, if asked, its stores. A ".traceg" of tracer version up to 6,
-// plain or compressed (byte_source.hpp), or a ".tracez" (tracez_file.hpp), told by its content.
+// Reads the warp instructions of an Accel-Sim trace: its loads of global memory and, if asked, its stores. A ".traceg"
+// of tracer version up to 6, plain or compressed (byte_source.hpp), or a ".tracez" (tracez_file.hpp), told by its
+// content.
 #pragma once
 
 #include <bitset>
@@ -54,10 +55,10 @@ struct TracegKernel {
     bool in_order = true;  ///< coordinates of thread blocks ascend, so that each is numbered by its own
 };
 
-/// Calls load(warp, GlobalLoad&) for every load (and store, if asked). warp = CTA * warps_per_cta + number: CTAs in ascending order, the
-/// warps of each as they stand in the file. A CTA's number is that of its coordinates in the grid as long as these
-/// ascend through the file, and else its place, which needs a file with all of them. Throws Error "FILE: line N: …" at
-/// the first line that breaks the grammar, and if a CTA is cut short.
+/// Calls load(warp, GlobalLoad&) for every load (and store, if asked). warp = CTA * warps_per_cta + number: CTAs in
+/// ascending order, the warps of each as they stand in the file. A CTA's number is that of its coordinates in the grid
+/// as long as these ascend through the file, and else its place, which needs a file with all of them. Throws Error
+/// "FILE: line N: …" at the first line that breaks the grammar, and if a CTA is cut short.
 TracegKernel parse_traceg(const std::string& path, const std::function<void(std::uint64_t, GlobalLoad&)>& load,
                           const TracegOptions& = {});
 

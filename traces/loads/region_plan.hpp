@@ -1,9 +1,9 @@
 // Regions of the trace format for objects that lie anywhere in memory.
 //
-// Objects of one size, those that are read and those that are written apart, get regions without gaps where those can have them: elements at base + i * stride, the base a
-// multiple of 2 MiB, the stride their size, less than 2^30 of them. Where they cannot (objects of 48 B at multiples of
-// 16), or where the lanes of one access might lie in two of them, they get one region of pages (Region::pages): an
-// access is one record, however far apart its lanes are.
+// Objects of one size, those that are read and those that are written apart, get regions without gaps where those can
+// have them: elements at base + i * stride, the base a multiple of 2 MiB, the stride their size, less than 2^30 of
+// them. Where they cannot (objects of 48 B at multiples of 16), or where the lanes of one access might lie in two of
+// them, they get one region of pages (Region::pages): an access is one record, however far apart its lanes are.
 #pragma once
 
 #include <cstdint>

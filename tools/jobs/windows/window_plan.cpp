@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "tracer/sampling/random_stream.hpp"
+#include "traces/shuffle.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -71,7 +72,7 @@ BlockPlan WindowPlan::block(std::size_t number, std::uint32_t first) const {
     plan.fills = stratified(random, sizes_.fill_waves, launches_, warps_, sizes_.work_warps);
     // Neighbours in the list lie side by side in the picture: a random order makes any first ones a random choice.
     const auto shuffle = [&](std::vector<WindowPlace>& places) {
-        for (std::size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[random.below(i)]);
+        shuffle_by(places, [&](std::size_t n) { return random.below(n); });
     };
     shuffle(plan.sm_windows);
     shuffle(plan.windows);
