@@ -19,8 +19,9 @@
 namespace raycache::tools {
 namespace {
 
-/// Short ones, many: a machine that others share is quiet for moments.
-constexpr unsigned tries = 20;
+/// Short ones, many: a machine that others share is quiet for moments, and one that was idle takes a while to its full
+/// clock. They go on until so many in a row were no faster than the best before by a hundredth, at most so many in all.
+constexpr unsigned tries = 20, most_tries = 400;
 
 /// Zeroed, in large pages where the system gives any, so that the TLB is no part of what is measured.
 class Buffer {
@@ -52,11 +53,21 @@ double seconds_of(const Work& work) {
     return thread_seconds() - start;
 }
 
+/// Least of what `seconds` says, called until that no longer falls.
+template <class Seconds>
+double least_of(const Seconds& seconds) {
+    double least = seconds();
+    for (unsigned in_vain = 0, i = 1; in_vain < tries && i < most_tries; ++i) {
+        const double now = seconds();
+        in_vain = now < 0.99 * least ? 0 : in_vain + 1;
+        least = std::min(least, now);
+    }
+    return least;
+}
+
 template <class Work>
 double least_seconds(const Work& work) {
-    double least = seconds_of(work);
-    for (unsigned i = 1; i < tries; ++i) least = std::min(least, seconds_of(work));
-    return least;
+    return least_of([&] { return seconds_of(work); });
 }
 
 /// Reads all of it, 16 bytes at a time, which every processor can: with two loads a cycle at most 32 bytes a cycle.
@@ -136,8 +147,7 @@ double stream_all_gb_s(std::uint64_t bytes) {
     std::vector<std::unique_ptr<Buffer>> buffers;
     for (std::size_t i = 0; i < threads; ++i) buffers.push_back(std::make_unique<Buffer>(bytes));
     const std::uint64_t passes = passes_over(bytes);
-    double best = 0;
-    for (unsigned i = 0; i < tries; ++i) {
+    const double seconds = least_of([&] {
         const auto start = std::chrono::steady_clock::now();
         tbb::parallel_for(std::size_t{0}, threads, [&](std::size_t t) {
             for (std::uint64_t pass = 0; pass < passes; ++pass) {
@@ -145,10 +155,9 @@ double stream_all_gb_s(std::uint64_t bytes) {
                 use(sum);
             }
         });
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        best = std::max(best, static_cast<double>(threads * passes * bytes) * 1e-9 / seconds.count());
-    }
-    return best;
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    });
+    return static_cast<double>(threads * passes * bytes) * 1e-9 / seconds;
 }
 
 }  // namespace raycache::tools

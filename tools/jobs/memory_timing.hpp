@@ -10,11 +10,11 @@ namespace raycache::tools {
 double measured_mhz();
 
 /// Nanoseconds from one load to the next that needs its answer, in random order over all lines of a buffer of this
-/// size; the least of several chases, since what disturbs one makes it longer.
+/// size; the least of many chases, until that no longer falls, since what disturbs one makes it longer.
 double chase_ns(std::uint64_t bytes, std::uint32_t line_bytes);
 
 /// Bytes a nanosecond (GB/s) that one thread reads from a buffer of this size, in order, again and again; the best of
-/// several.
+/// many.
 double stream_gb_s(std::uint64_t bytes);
 
 /// The same of all threads of the TBB arena together, each with a buffer of its own of this size.
