@@ -140,6 +140,11 @@ Texture decode_image(std::span<const std::uint8_t> bytes, const std::string& nam
     return texture;
 }
 
+bool is_tone_mapped(const std::string& path) {
+    const ImageFormat format = require_format(path);
+    return format != ImageFormat::exr && format != ImageFormat::hdr;
+}
+
 void check_image_name(const std::string& path) {
     require_format(path);
     image_codec();  // may be missing
@@ -148,7 +153,7 @@ void check_image_name(const std::string& path) {
 void write_image(const std::string& path, const Image& image, float exposure_stops) {
     const ImageFormat format = require_format(path);
     check_size(path, image.width, image.height, image.pixels.size());
-    const bool floats = format == ImageFormat::exr || format == ImageFormat::hdr;
+    const bool floats = !is_tone_mapped(path);
     ImageLayout layout = layout_of(image.width, image.height, 3, floats);
     if (floats) {
         if (format == ImageFormat::exr) layout.attributes.emplace_back("compression", "zip");

@@ -71,6 +71,9 @@ struct ChannelFile {
 ChannelFile read_channels(const std::string& path, const std::vector<std::string>& attributes,
                           const std::function<void(const ChannelFile&)>& check = {});
 
+/// Whether write_image() tone maps what it writes under that name. Throws UsageError for an extension it does not know.
+bool is_tone_mapped(const std::string& path);
+
 /// Throws UsageError unless write_image() knows the extension of `path`, Error if nothing can be written at all.
 void check_image_name(const std::string& path);
 

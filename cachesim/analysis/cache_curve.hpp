@@ -49,7 +49,7 @@ struct LevelCurve {
 
     Sums bytes_per_ray(const CurveRow&, std::uint64_t ways) const;  ///< fetched from below
     Sums misses(const CurveRow&, std::uint64_t ways) const;         ///< per request or sector asked for
-    /// The same of another policy, with so many ways as policies[].ways[at].
+    /// The same of another policy, with the ways of policies[].ways[at].
     Sums bytes_per_ray(const PolicyRow&, std::size_t at) const;
     Sums misses(const PolicyRow&, std::size_t at) const;
 };

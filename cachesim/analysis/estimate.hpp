@@ -26,7 +26,7 @@ struct Estimate {
     std::optional<double> half_width;
 };
 
-/// The same with an interval so many times as wide.
+/// The same with the width of its interval multiplied.
 inline Estimate widened(Estimate estimate, double times) {
     if (estimate.half_width) *estimate.half_width *= times;
     return estimate;

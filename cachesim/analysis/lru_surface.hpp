@@ -21,10 +21,10 @@
 
 namespace raycache::cachesim {
 
-/// Whether the level's way to find a set works for so many sets: "ipoly" and "parity" do only for some.
+/// Whether the level's way to find a set works for that number of sets: "ipoly" and "parity" do only for some.
 bool index_fits(const CacheGeometry&, std::uint64_t sets);
 
-/// The same cache with so many sets in each slice, by its own index if that fits, else by xor_fold.
+/// The same cache with that number of sets in each slice, by its own index if that fits, else by xor_fold.
 CacheGeometry with_sets(CacheGeometry, std::uint64_t sets);
 
 /// One set of all its lines.

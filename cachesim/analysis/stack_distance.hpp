@@ -32,7 +32,7 @@ public:
     void add_first(std::uint64_t sectors) { asked_ += sectors; }
 
     std::uint64_t asked() const { return asked_; }
-    /// Of a cache of so many ways; with one set, of so many lines.
+    /// Of a cache with that number of ways; with one set, of lines.
     std::uint64_t hits(std::uint64_t ways) const {
         std::uint64_t sum = 0;
         for (std::uint64_t d = 0; d < std::min<std::uint64_t>(ways, by_distance_.size()); ++d) sum += by_distance_[d];

@@ -48,7 +48,7 @@ inline constexpr IdentityTerm traffic_identity[terms_before_caches + most_levels
      "higher L3 miss rate"},
 };
 
-/// The terms for a GPU with so many levels of caches, in the order of the identity.
+/// The terms for a GPU with that number of cache levels, in the order of the identity.
 inline std::span<const IdentityTerm> identity_terms(std::size_t levels) {
     return std::span(traffic_identity).first(terms_before_caches + levels);
 }
@@ -64,7 +64,7 @@ struct Factors {
 
     const Estimate& cache_locality() const { return locality.back(); }
     double product() const;
-    /// Makes all intervals so many times as wide.
+    /// Multiplies the width of all intervals.
     void widen(double times);
 };
 

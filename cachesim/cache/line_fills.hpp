@@ -7,7 +7,7 @@ namespace raycache::cachesim {
 
 struct LineFills {
     std::uint64_t line_misses = 0;    ///< look-ups of a line that was in no way of its set
-    std::uint64_t of_empty_ways = 0;  ///< those of them that took a way that had held nothing since the start
+    std::uint64_t of_empty_ways = 0;  ///< line misses that took a way that had held nothing since the start
 
     LineFills& operator+=(const LineFills& other) {
         line_misses += other.line_misses;

@@ -22,7 +22,7 @@ bool is_changed(const std::vector<std::string>& changes, const std::string& key)
     return std::any_of(changes.begin(), changes.end(), [&](const auto& c) { return c.starts_with(key + '='); });
 }
 
-/// The ways that keep the capacity of a cache whose sets or slices are other ones.
+/// The ways that keep the capacity of a cache whose sets or slices are other ones, to the nearest way.
 void keep_capacity(const std::string& level, const ValueTexts& own, ValueTexts& chosen) {
     const std::string sets = level + ".sets", slices = level + ".slices", ways = level + ".ways";
     if (!chosen.contains(sets) && !chosen.contains(slices)) return;
@@ -30,12 +30,7 @@ void keep_capacity(const std::string& level, const ValueTexts& own, ValueTexts& 
     const std::uint64_t now =
         number(chosen, sets, number(own, sets, 1)) * number(chosen, slices, number(own, slices, 1));
     const std::uint64_t lines = number(chosen, ways, number(own, ways, 1)) * before;
-    if (lines % now != 0)
-        throw UsageError(
-            fmt::format("{}: expected choices that keep a capacity of {} lines in whole ways, found {} sets in all; "
-                        "choose others, or set {}",
-                        sets, lines, now, ways));
-    chosen[ways] = fmt::format("{}", lines / now);
+    chosen[ways] = fmt::format("{}", std::max<std::uint64_t>(1, (lines + now / 2) / now));
 }
 
 }  // namespace

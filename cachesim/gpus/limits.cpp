@@ -8,6 +8,7 @@
 
 #include "cachesim/gpus/key_tables.hpp"
 #include "cachesim/gpus/value_check.hpp"
+#include "traces/did_you_mean.hpp"
 
 namespace raycache::cachesim {
 
@@ -50,7 +51,8 @@ struct Check {
     std::optional<GpuProblem> operator()(const NameValue<Struct>& v) const {
         const auto names = v.names();
         if (std::find(names.begin(), names.end(), of.*v.member) != names.end()) return std::nullopt;
-        return GpuProblem{key, fmt::format("expected one of: {}; found \"{}\"", fmt::join(names, ", "), of.*v.member)};
+        return GpuProblem{key, fmt::format("expected one of: {}; found \"{}\"{}", fmt::join(names, ", "), of.*v.member,
+                                           did_you_mean(of.*v.member, names))};
     }
     template <class Integer>
     std::optional<GpuProblem> operator()(const ListValue<Struct, Integer>& v) const {

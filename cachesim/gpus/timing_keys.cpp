@@ -16,7 +16,7 @@ std::span<const Key<Timing>> timing_keys() {
         {"not_predicted", text_or_none(&T::not_predicted), initial, "",
          "why no time is to be predicted. Reports then print that in place of times; traffic stays. The CPU preset has "
          "one; an empty text, `--set timing.not_predicted=''`, takes it away"},
-        {"clock_mhz", real(&T::clock_mhz, 0, 1e5), needed, "MHz", "clock of the SMs"},
+        {"clock_mhz", real(&T::clock_mhz, 1, 1e5), needed, "MHz", "clock of the SMs"},
         {"launch_cycles", whole(&T::launch_cycles, 0, longest), initial, "cycles",
          "from a launch to its first instruction"},
         {"schedulers", whole(&T::schedulers, 1, 64), needed, "",

@@ -68,9 +68,14 @@ public:
             return key;
         }
         toml::table* own = root_[key].as_table();
-        if (!own || inner->size() != 1)
-            throw UsageError(fmt::format("{}: expected a key of a table of the file, found \"{}\"", file_,
-                                         printable_line(assignment)));
+        if (!own || inner->size() != 1) {
+            std::vector<std::string> tables;
+            for (const auto& [name, node] : root_)
+                if (node.is_table() && !node.as_table()->contains("value")) tables.emplace_back(name.str());
+            throw UsageError(fmt::format("{} with --set: expected a key of one of its tables {}, found \"{}\"{}", file_,
+                                         fmt::join(tables, ", "), printable_line(assignment),
+                                         own ? std::string() : did_you_mean(key, tables)));
+        }
         const std::string inner_key(inner->begin()->first.str());
         own->insert_or_assign(inner_key, inner->begin()->second);
         return key + '.' + inner_key;
@@ -135,7 +140,7 @@ public:
                 list += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == names.size() ? " or " : ", ", names[i]);
             }
             reader_->fail(reader_->lines_[prefix_ + key], prefix_ + key,
-                          fmt::format("expected {}, found \"{}\"", list, found));
+                          fmt::format("expected {}, found \"{}\"{}", list, found, did_you_mean(found, names)));
         }
 
         Section section(const std::string& key, const std::vector<std::string>& known) const {
@@ -199,6 +204,14 @@ private:
         std::ostringstream name;
         name << node.type();
         return name.str();
+    }
+
+    /// What stands where a number should: the word itself, of what is no word its type.
+    static std::string found_instead(const toml::node& node) {
+        if (const auto* word = node.as_string())
+            return word->get().empty() ? "nothing" : fmt::format("\"{}\"", printable_line(word->get()));
+        if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+        return type_name(node);
     }
 
     void only_keys(const toml::table& table, const std::string& prefix, const std::vector<std::string>& known) const {
@@ -316,7 +329,7 @@ private:
         constexpr std::uint64_t most = std::min<std::uint64_t>(std::numeric_limits<Integer>::max(), 1ull << 41);
         const auto expected = fmt::format("expected a {}whole number below {}", zero ? "" : "positive ", most);
         const auto integer = node.as_integer();
-        if (!integer) fail(line_of(node), name, fmt::format("{}, found {}", expected, type_name(node)));
+        if (!integer) fail(line_of(node), name, fmt::format("{}, found {}", expected, found_instead(node)));
         const std::int64_t found = integer->get();
         if (found < (zero ? 0 : 1) || static_cast<std::uint64_t>(found) > std::numeric_limits<Integer>::max())
             fail(line_of(node), name, fmt::format("{}, found {}", expected, found));
@@ -328,7 +341,7 @@ private:
         const auto number = node.value<double>();
         const bool is_number = node.is_integer() || node.is_floating_point();
         if (!is_number || !number)
-            fail(line_of(node), name, fmt::format("expected a positive number, found {}", type_name(node)));
+            fail(line_of(node), name, fmt::format("expected a positive number, found {}", found_instead(node)));
         if (!(*number > 0) || !(*number < 1e12))
             fail(line_of(node), name, fmt::format("expected a positive number below 1e12, found {}", *number));
         values_.back().value = fmt::format("{}", *number);

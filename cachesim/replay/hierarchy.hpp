@@ -37,7 +37,7 @@ public:
     /// Error for the regions of a wavefront, unless it is of the last level alone.
     void observe(RequestSink&);
 
-    /// Rounds of a window: every SM may run so many rounds ahead of the others.
+    /// Rounds of a window: every SM may run that far ahead of the others.
     std::size_t rounds() const { return rules_.rounds; }
 
     /// Before the first access of a window.

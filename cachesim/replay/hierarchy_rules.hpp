@@ -37,7 +37,7 @@ struct HierarchyRules {
     std::size_t shared;                     ///< the last level: one cache for all SMs
     std::vector<traces::ObjectKind> kinds;  ///< of each region
     bool writes = false, streams = false;   ///< any region is written, is streamed (traces::is_stream)
-    std::size_t rounds;                     ///< of a window: every SM may run so many rounds ahead of others
+    std::size_t rounds;                     ///< of a window: every SM may run that far ahead of others
 };
 
 /// Where a warp access of a window comes from. The window has HierarchyRules::rounds of them for each SM.

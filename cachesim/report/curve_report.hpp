@@ -53,12 +53,12 @@ std::string series_name(const CurveReport&, const CurveSeries&);
 /// "L1: micro-jitter with 128 KiB fetches as few bytes per ray as cranley-patterson with 600 KiB (4.7x; …); …"
 std::string to_sentence(const Equivalent&);
 
-/// Share of what was asked for that is found, with so many ways; of a policy, at that place of its list.
+/// Share of what was asked for that is found, with that number of ways; of a policy, at that place of its list.
 Estimate hit_rate(const LevelCurve&, const CurveRow&, std::uint64_t ways);
 Estimate hit_rate(const LevelCurve&, const PolicyRow&, std::size_t at);
 /// "L1"
 std::string level_name(std::size_t level);
-/// "L2-to-L1", "DRAM": where the bytes go that a level of so many fetches.
+/// "L2-to-L1", "DRAM": where the bytes go that a level of a GPU with `levels` fetches.
 std::string traffic_name(std::size_t level, std::size_t levels);
 /// "own sets", "fully associative", "16 sets, xor_fold"
 std::string row_name(const LevelCurve&, std::size_t row);

@@ -55,7 +55,7 @@ Json traffic_json(const Report&, std::size_t row);
 /// null: the row itself.
 Json figures_json(const Report&, const char* at);
 
-/// One of them: its title, unit, meaning and the way it is shown. docs/json.md.
+/// One figure: its title, unit, meaning and the way it is shown. docs/json.md.
 template <class Figure>
 Json figure_json(const Figure& figure, const char* at) {
     constexpr const char* better[] = {nullptr, "lower", "higher"};

@@ -121,7 +121,9 @@ std::string traffic_table(const TimedReport& report, const Tables& tables, std::
         std::vector<std::string> cells;
         for (const BytesFigures& bytes : all) {
             cells.push_back(figure_cell(traffic_figures[bytes.mean.index], row[bytes.mean]));
-            if (ratios) cells.push_back(tables.against_base(report.rows[i], row[bytes.ratio]));
+            // A GPU without that level has no bytes of it, and no ratio.
+            const bool counted = cells.back() != undefined;
+            if (ratios) cells.push_back(counted ? tables.against_base(report.rows[i], row[bytes.ratio]) : undefined);
         }
         tables.add(table, report.rows[i], cells);
     }

@@ -26,7 +26,7 @@ struct Difference {
     double dram_compulsory_share = 0;  ///< of the strategy; see Row
     std::size_t traced = 0;            ///< sample indices; blocks of them where `windows` says so
     std::optional<WindowSample> windows{};
-    std::uint64_t spp = 0;  ///< of so many
+    std::uint64_t spp = 0;  ///< N
 };
 
 struct Verdict {
@@ -38,7 +38,7 @@ struct Verdict {
 struct BytesFigures {
     TrafficKey mean, ratio;
 };
-/// Of all levels of a GPU with so many: L2-to-L1, L3-to-L2 and DRAM bytes.
+/// Of all levels of a GPU, which has two or three: L2-to-L1, L3-to-L2 and DRAM bytes.
 std::span<const BytesFigures> bytes_figures(std::size_t levels);
 
 /// Of a row of a report; no predicted time.

@@ -1,4 +1,4 @@
-// What a reader of estimates from windows must know of them.
+// What a reader of estimates from windows must know.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Running something on so many threads, whatever the machine has.
+// Running something on a number of threads, whatever the machine has.
 #pragma once
 
 #include <tbb/global_control.h>

@@ -13,7 +13,7 @@ double read_cost(std::uint64_t trace_bytes);                          ///< check
 double render_cost(std::uint64_t paths, std::uint32_t bounces);
 double trace_cost(const tracer::CaptureSettings&);
 double replay_cost(const tracer::CaptureSettings&, bool timed);  ///< through one GPU
-/// Of so many paths: traced, and replayed through one GPU without and with time.
+/// Of that number of paths: traced, and replayed through one GPU without and with time.
 double window_cost(std::uint32_t bounces, double traced, double replayed, double timed);
 double explain_cost(const tracer::CaptureSettings&, bool timed);  ///< of one of the two traces
 

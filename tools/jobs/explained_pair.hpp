@@ -23,7 +23,7 @@ using ExplainedPair = std::array<ExplainedSide, 2>;  ///< base, other
 /// All but what replays find. Throws Error unless the two are of the same scene, view and sample indices.
 cachesim::Explanation begin_explanation(const ExplainedPair&, const cachesim::Gpu&, cachesim::GroupBy);
 
-/// Makes room for all idealised replays of so many launches, or says why no time is predicted.
+/// Makes room for all idealised replays of that number of launches, or says why no time is predicted.
 void predict_speed_ups(cachesim::Explanation&, const cachesim::Gpu&, std::size_t launches);
 
 }  // namespace raycache::tools

@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "traces/error.hpp"
@@ -45,6 +47,22 @@ void refuse_overwriting(const FileNames& inputs, const FileNames& outputs) {
     }
 }
 
+void refuse_same_outputs(const FileNames& outputs) {
+    std::set<std::string> places;
+    std::set<Identity> files;
+    for (const std::string& output : outputs) {
+        struct stat status {};
+        const bool exists = !output.empty() && ::stat(output.c_str(), &status) == 0;
+        if (output.empty() || output == "-" || (exists && !S_ISREG(status.st_mode))) continue;
+        std::error_code error;
+        const std::string place = std::filesystem::weakly_canonical(std::filesystem::absolute(output), error).string();
+        const auto identity = identity_of(output);
+        if (places.insert(place).second && (!identity || files.insert(*identity).second)) continue;
+        throw UsageError(fmt::format(
+            "output {}: expected a file for each output, found two outputs in this one; name another", output));
+    }
+}
+
 void refuse_stdout(const char* option, const std::string& path) {
     if (path != "-") return;
     throw UsageError(fmt::format(
@@ -61,6 +79,7 @@ void warn_of_unfinished(const std::string& path, const Say& warn) {
 }
 
 void check_outputs(const FileNames& outputs, const Say& warn) {
+    refuse_same_outputs(outputs);
     for (const std::string& output : outputs) {
         if (output.empty()) continue;
         if (output == "-") {

@@ -15,11 +15,15 @@ using FileNames = std::vector<std::string>;
 /// not exist are passed over.
 void refuse_overwriting(const FileNames& inputs, const FileNames& outputs);
 
+/// Throws UsageError if two outputs are one file, under whatever names or links. What is no ordinary file, such as
+/// /dev/null, may be named twice.
+void refuse_same_outputs(const FileNames& outputs);
+
 /// Throws UsageError if `path` is "-", where stdout is for something else.
 void refuse_stdout(const char* option, const std::string& path);
 
-/// Before the work: throws Error if one of the outputs cannot be written (a folder that is missing or read-only, a
-/// named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a process; named pipes stay
+/// Before the work: refuse_same_outputs(), throws Error if one of the outputs cannot be written (a folder that is
+/// missing or read-only, a named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a process; named pipes stay
 /// open to its end.
 void check_outputs(const FileNames& outputs, const Say& warn);
 

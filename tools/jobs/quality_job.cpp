@@ -65,6 +65,9 @@ QualityResult run(const QualityJob& job, const std::optional<cachesim::Gpu>& gpu
     request.gpu = gpu;
     check_reference(job, request);
     warn_of_strategies(request.cases, observer);
+    FileNames written = outputs;
+    written.push_back(job.reference_file);
+    refuse_same_outputs(written);
     std::error_code error;
     if (!std::filesystem::exists(job.reference_file, error)) check_outputs({job.reference_file}, observer.warning());
 

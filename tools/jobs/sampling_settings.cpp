@@ -106,10 +106,13 @@ tracer::StrategySettings SamplingSettings::strategy(const std::string& sequence,
     p.set("interleave", interleave);
     p.set("share", share);
     if (share_bits) p.set("share-bits", *share_bits);
+    std::set<std::string> given;
     for (const std::string& one : parameters) {
         const std::size_t at = one.find('=');
         if (at == std::string::npos)
             throw UsageError(fmt::format("--param '{}'; expected NAME=VALUE such as mu=0.1", one));
+        if (!given.insert(one.substr(0, at)).second)
+            throw UsageError(fmt::format("--param '{}': {} is given twice; expected once", one, one.substr(0, at)));
         p.set(one.substr(0, at), one.substr(at + 1));
     }
     tracer::check_parameters(p);

@@ -159,6 +159,10 @@ void Command::remove_option(const std::string& name) {
     std::erase_if(options_, [&](const auto& option) { return option->name() == name; });
 }
 
+void Command::move_to_front(std::size_t first) {
+    std::rotate(options_.begin(), options_.begin() + static_cast<std::ptrdiff_t>(first), options_.end());
+}
+
 Option* Command::find_option(const std::string& name) const {
     for (const auto& option : options_)
         for (const std::string& own : option->names())

@@ -102,6 +102,8 @@ public:
     Option* add_option(const std::string& names, T& target, const std::string& help);
     Option* add_flag(const std::string& names, bool& target, const std::string& help);
     void remove_option(const std::string& name);
+    /// Puts the options from that place on before all others, where --help lists them first.
+    void move_to_front(std::size_t first);
     Option* find_option(const std::string& name) const;
 
     /// The heading of the options that are added next; empty: the command's own.

@@ -185,7 +185,11 @@ void export_instructions(const ExportArguments& o) {
     warn_of_others(o, reader.header());
 }
 
-Action plan(const std::shared_ptr<const ExportArguments>& o) {
+Action plan(const std::shared_ptr<const ExportArguments>& o, const Command& command) {
+    if (o->format != "accel-sim")
+        for (const char* name : {"--warps-per-cta", "--binary-version"})
+            if (command.find_option(name)->given())
+                throw UsageError(fmt::format("{} with --format {}; expected --format accel-sim", name, o->format));
     if (o->format == "accel-sim") {
         if (!o->gpu.names.empty() || o->gpu.is_changed() || o->sm || o->l1 || o->cycle_mhz || o->level != "l1")
             throw UsageError(
@@ -262,7 +266,7 @@ void add_export(Program& program) {
          "raycache export mj.rct --launch 1 --gpu h100 --set l1.ways=8 --sm 0 --format dinero -o - | less",
          "raycache export mj.rct --format accel-sim --warps-per-cta 8 -o mj-trace",
          "raycache export mj.rct --format accel-sim -o mj.traceg.xz"});
-    command->plan([o] { return plan(o); });
+    command->plan([o, command] { return plan(o, *command); });
 }
 
 }  // namespace raycache::tools

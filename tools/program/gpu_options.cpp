@@ -2,10 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "cachesim/gpus/gpu_keys.hpp"
 #include "cachesim/gpus/gpu_name.hpp"
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
+namespace {
+
+/// Of KEY=VALUE: that GPU files may have such a key. They all may have the same.
+void check_changed_key(std::string& change) {
+    const std::size_t equals = change.find('=');
+    if (equals == std::string::npos) return;  // whoever reads it says what is expected
+    const std::string key = change.substr(0, equals);
+    std::vector<std::string> known = cachesim::gpu_key_names();
+    for (const char* size : {"l1.size", "l2.size", "l3.size"}) known.emplace_back(size);
+    if (std::find(known.begin(), known.end(), key) != known.end()) return;
+    throw UsageError(
+        fmt::format("--set {}: expected a key of GPU files (see 'raycache list gpus --keys'), found \"{}\"{}", change,
+                    key, did_you_mean(key, known)));
+}
+
+}  // namespace
 
 Option* GpuOptions::add_names(Command& command, const std::string& help) {
     command.group("GPU");
@@ -23,6 +43,7 @@ void GpuOptions::add_changes(Command& command) {
                     "another value for a key of every GPU file (docs/gpus.md), shown beside the GPU's name; several "
                     "values make several GPUs, and with --set repeated every combination. Bytes may have a unit: 28KiB")
         ->repeated()
+        ->check(check_changed_key)
         ->type_name("KEY=VALUE,...");
     command
         .add_option("--l1-kib", l1_kib,

@@ -189,6 +189,8 @@ std::vector<std::string> idle_options(const Command& command, std::span<const tr
     if (const Option* given = command.find_option("--param"))
         for (const std::string& word : given->words()) {
             const std::string name = word.substr(0, word.find('='));
+            if (context.given(("--" + name).c_str()))
+                lines.push_back(fmt::format("--{} has no effect: --param {} takes its place", name, word));
             add("--param " + name,
                 name == tracer::interleave_parameter.name ? Rule(interleave_rule) : parameter_rule(name));
         }
@@ -204,6 +206,17 @@ std::vector<std::string> idle_besides(const Command& command, const std::vector<
         lines.push_back(fmt::format("{} has no effect: {}", option->name(), reason));
     }
     return lines;
+}
+
+std::vector<std::string> idle_of_format(const Command& command) {
+    const auto given = [&](const char* name) {
+        const Option* option = command.find_option(name);
+        return option && option->given();
+    };
+    if (!given("--wide") || given("--save")) return {};
+    for (const char* format : {"--json", "--csv"})
+        if (given(format)) return {fmt::format("--wide has no effect: {} has no columns to fit", format)};
+    return {};
 }
 
 std::vector<std::string> idle_on_traces(const Command& command) {

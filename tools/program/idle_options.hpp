@@ -26,6 +26,9 @@ std::vector<std::string> idle_options(const Command& command, std::span<const tr
 std::vector<std::string> idle_besides(const Command& command, const std::vector<std::string>& read,
                                       const std::string& reason);
 
+/// The same of --wide where no table is printed.
+std::vector<std::string> idle_of_format(const Command& command);
+
 /// The same where a command reads trace files, which hold scene and sampling: every option about these.
 std::vector<std::string> idle_on_traces(const Command& command);
 

@@ -11,6 +11,7 @@
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/help.hpp"
+#include "tools/program/idle_options.hpp"
 #include "tools/program/memory_limit.hpp"
 #include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
@@ -124,6 +125,18 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Command>>& c
     return names;
 }
 
+/// Of a word where a command is expected.
+UsageError unknown_word(const std::string& word, const std::vector<std::string>& commands) {
+    if (word.starts_with('-')) {
+        const std::string meant = did_you_mean(word, {"--help", "-h", "--version"});
+        return UsageError(fmt::format("unknown option '{}'; expected a command, --help or --version{}", word, meant));
+    }
+    std::string meant = did_you_mean(word, commands);
+    if (word == "help" || word == "version") meant = fmt::format("; did you mean '--{}'?", word);
+    return UsageError(
+        fmt::format("unknown command '{}'; expected one of: {}{}", word, fmt::join(commands, ", "), meant));
+}
+
 }  // namespace
 
 Program::Program() {
@@ -177,6 +190,7 @@ Action Program::parse(const std::vector<std::string>& words) {
         app.parse(std::move(reversed));
     } catch (const CLI::CallForHelp&) {
         find_chosen();
+        if (!chosen && !words.front().starts_with('-')) throw unknown_word(words.front(), names_of(commands_));
         return [text = chosen ? help(*chosen) : help()] { print(text); };
     } catch (const CLI::CallForVersion&) {
         return [] { print(std::string(program_name) + "\n"); };
@@ -189,18 +203,23 @@ Action Program::parse(const std::vector<std::string>& words) {
     find_chosen();
     const std::vector<std::string> extras = app.remaining();
     const std::vector<std::string> names = names_of(commands_);
-    if (!extras.empty())
-        throw UsageError(fmt::format("unknown {} '{}'; expected one of: {}{}",
-                                     extras.front().starts_with('-') ? "option" : "command", extras.front(),
-                                     fmt::join(names, ", "), did_you_mean(extras.front(), names)));
+    if (!extras.empty()) throw unknown_word(extras.front(), names);
     if (!chosen)
         throw UsageError(fmt::format("no command; expected one of: {}; see 'raycache --help'", fmt::join(names, ", ")));
     refuse_extras(declared[chosen]->remaining(), *chosen);
     refuse_options_as_values(typed, *chosen);
-    for (const auto& option : chosen->options())
-        if (const auto found = typed.find(option.get()); found != typed.end()) option->read(found->second);
+    // Files last: a name that nobody knows is said before a file that is not there.
+    for (const bool positional : {false, true})
+        for (const auto& option : chosen->options())
+            if (const auto found = typed.find(option.get());
+                found != typed.end() && option->is_positional() == positional)
+                option->read(found->second);
     check_together(*chosen);
-    return chosen->make_action();
+    Action action = chosen->make_action();
+    return [action = std::move(action), chosen] {
+        for (const std::string& line : idle_of_format(*chosen)) warn(line);
+        action();
+    };
 }
 
 }  // namespace raycache::tools

@@ -1,9 +1,13 @@
 // raycache render: a picture of a scene, to see that it is what one thinks it is.
+#include <fmt/format.h>
+
 #include "tools/jobs/render_job.hpp"
 #include "tools/program/commands.hpp"
+#include "tools/program/console.hpp"
 #include "tools/program/idle_options.hpp"
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
+#include "tracer/image.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -23,6 +27,8 @@ Action plan(const std::shared_ptr<const RenderArguments>& o, const Command* comm
     const tracer::CaptureSettings settings = job.capture();
     return [o, command, job, settings] {
         warn_of_idle(*command, {&settings, 1}, {false, "a picture is rendered without the BVH and warps of a trace"});
+        if (o->exposure && !tracer::is_tone_mapped(o->output))
+            warn(fmt::format("--exposure has no effect: {} holds linear values", o->output));
         const auto limit = o->threads.apply();
         Progress progress("render");
         run(job, progress);

@@ -151,6 +151,7 @@ void add_sweep(Program& program) {
     o->common.add(*command, true);
     o->estimate.add(*command, "of every predicted speed-up");
     command->remove_option("--mu");  // of one strategy; here it is a list
+    const std::size_t own = command->options().size();
     command->add_option("--mu", o->mus, "scrambling distances, separated by commas")->range(0.0, 1.0);
     command->add_option("--swept", o->swept, "the strategy whose mu is swept")->choices("strategy", strategy_names());
     command->add_option("--strategy", o->others, "other strategies to compare with, separated by commas")
@@ -160,6 +161,7 @@ void add_sweep(Program& program) {
     command->add_option("--max-r8", o->max_r8, "structured-noise index that the recommendation accepts")
         ->range(0.0, 1e6);
     command->add_option("--max-rmse", o->max_rmse, "RMSE over cranley-patterson's that it accepts")->range(0.0, 1e6);
+    command->move_to_front(own);
     command->examples(
         {"raycache sweep courtyard --gpu gtx-980-ti --spp 64",
          "raycache sweep sponza.glb --gpu h100 --spp 256 --resolution 256x256 --mu 0,0.1,0.2,0.5,1 --csv",

@@ -38,7 +38,7 @@ Bvh build_bvh(const Scene&, const BvhSettings& = {});
 /// Who builds, in words: equal ones build equal trees of equal triangles, on every processor.
 std::string bvh_builder();
 
-/// Entries of Bvh::triangles that build_bvh() can make of so many triangles.
+/// Entries of Bvh::triangles that build_bvh() can make of `triangles` triangles.
 std::size_t most_leaf_entries(std::size_t triangles, const BvhSettings&);
 
 }  // namespace raycache::tracer

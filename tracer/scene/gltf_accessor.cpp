@@ -110,7 +110,8 @@ void GltfAccessor::read_sparse(const GltfDocument& document, const tinygltf::Acc
                                const std::string& where, const GltfReport& report) {
     const auto& sparse = accessor.sparse;
     if (sparse.count < 0 || static_cast<std::uint64_t>(sparse.count) > count_)
-        report.fail(where, fmt::format("between 0 and {} sparse elements", count_), fmt::format("{}", sparse.count));
+        report.fail(where, fmt::format("between 0 and {} sparse elements", count_),
+                    sparse.count < 0 ? "a number below 0 or beyond 2147483647" : fmt::format("{}", sparse.count));
     const auto sparse_count = static_cast<std::uint64_t>(sparse.count);
     if (!is_index_type(sparse.indices.componentType))
         report.fail(where, "sparse indices of unsigned byte, short or int",

@@ -71,7 +71,7 @@ public:
         ++at_.sector;
     }
 
-    /// At most so many sectors.
+    /// At most that number of sectors.
     std::uint32_t most() const {
         return traces::warp_lanes * static_cast<std::uint32_t>((shape_.load_bytes >> shape_.sector_shift) + 2);
     }

@@ -18,7 +18,7 @@
 
 namespace raycache::cachesim {
 
-/// Tests of one kind: so many a cycle, whole or not, in order.
+/// Tests of one kind: a number of them a cycle, whole or not, in order.
 class TestPipeline {
 public:
     /// `unlimited`: any number in a cycle.

@@ -21,7 +21,7 @@ struct EstimateSettings {
     /// it: 0 … 1. In time, of speed-ups alone; else of bytes per ray of every level.
     double target_error = 0.05;
     double time_budget = 0;          ///< seconds, the scene's loading included; no blocks that would end later; 0: none
-    std::uint64_t window_count = 0;  ///< so many of each strategy, whatever the error; 0: by the two above
+    std::uint64_t window_count = 0;  ///< windows of each strategy, whatever the error; 0: by the two above
     std::string baseline;            ///< what target_error is about; empty: cranley-patterson where it is compared
     bool across_gpus = false;        ///< ratios of all variants of a GPU to the baseline on the first
 

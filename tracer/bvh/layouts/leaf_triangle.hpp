@@ -27,7 +27,7 @@ static_assert(sizeof(LeafTriangle) == 48);
 /// These triangles of the scene, in this order.
 std::vector<LeafTriangle> leaf_triangles(std::span<const std::uint32_t> order, const Scene&);
 
-/// So many of them as a region of a trace.
+/// The region of a trace that holds `count` leaf triangles.
 traces::Region leaf_triangle_region(std::size_t count);
 
 }  // namespace raycache::tracer

@@ -75,7 +75,7 @@ struct StagePlan {
 
 struct IntegratorEntry {
     std::string name, description;
-    /// How many of them a sample needs.
+    /// How many sample dimensions a path needs.
     std::uint32_t (*dimensions)(const PathSettings&);
     std::unique_ptr<Integrator> (*make)(const IntegratorInput&);
     /// Null where it is not cut into stages: it then runs as a megakernel alone.

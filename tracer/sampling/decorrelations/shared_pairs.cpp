@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -20,11 +21,14 @@ std::uint32_t parse_pair(const std::string& word, const std::string& whole) {
         if (word == pair.name) return pair.first;
     std::uint32_t first = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), first);
-    if (error != std::errc{} || stop != word.data() + word.size() || first % 2 != 0 || first >= max_dimension)
+    if (error != std::errc{} || stop != word.data() + word.size() || first % 2 != 0 || first >= max_dimension) {
+        std::vector<std::string> names{"sets"};
+        for (const NamedPair& pair : named_pairs) names.emplace_back(pair.name);
         throw UsageError(fmt::format(
             "sampling: share must be sets, or pairs of dimensions joined by +: camera, light0, first-bounce "
-            "or the even number of a pair's first dimension, found {}: give share=first-bounce",
-            whole));
+            "or the even number of a pair's first dimension, found {}: give share=first-bounce{}",
+            whole, did_you_mean(word, names)));
+    }
     return first;
 }
 
