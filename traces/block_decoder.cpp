@@ -1,5 +1,6 @@
 #include "traces/block_decoder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <utility>
 
 #include "traces/compression.hpp"
+#include "traces/issue_rules.hpp"
 #include "traces/lane_stack.hpp"
 #include "traces/schedule.hpp"
 
@@ -22,6 +24,7 @@ public:
 private:
     void decode_warp(const Header&, Schedule&, WarpTrace&);
     void decode_control(Schedule&, Record&);
+    void decode_issue(WarpTrace&);
     void decode_starts(const Header&, Schedule&, std::uint32_t mask);
     template <unsigned fixed_degree>
     [[gnu::noinline]] void decode_access(const Header&, Schedule&, const Record&, std::uint32_t* out);
@@ -229,21 +232,45 @@ void Decoder::decode_warp(const Header& header, Schedule& schedule, WarpTrace& w
     if (run_ != 0) fault("run of predicted records", "no more than the warp has", "more");
     if (out != end) fault("lane accesses", "as many as the warp has", "fewer");
     if (schedule.busy() != 0) fault("end of the warp", "every lane finished", "a lane that waits");
+    warp.issue.clear();
+    if (header.issue) decode_issue(warp);
+}
+
+void Decoder::decode_issue(WarpTrace& warp) {
+    const auto accesses = static_cast<std::uint32_t>(
+        std::count_if(warp.records.begin(), warp.records.end(), [](const Record& r) { return r.is_access(); }));
+    const std::uint32_t steps = control_varint("number of issue steps");
+    if (steps > most_issue_steps(accesses))
+        fault("issue steps", fmt::format("at most {}", most_issue_steps(accesses)), fmt::format("{}", steps));
+    warp.issue.resize(steps);
+    std::uint64_t access = 0;
+    for (IssueStep& step : warp.issue) {
+        access += control_varint("place of an issue step");
+        const std::uint32_t back = control_varint("what an issue step waits for");
+        if (access > accesses)
+            fault("place of an issue step", fmt::format("at most {} accesses", accesses), fmt::format("{}", access));
+        if (back > access) fault("what an issue step waits for", "an access before it", fmt::format("{} back", back));
+        step.access = static_cast<std::uint32_t>(access);
+        step.needs = back == 0 ? 0 : step.access - back + 1;
+        step.instructions = control_varint("instructions of an issue step");
+    }
+    if (const char* what = issue_fault(warp.issue, accesses)) fault("issue steps", "the rules of the format", what);
 }
 
 /// Bytes that decoding the block takes, its warps included.
-std::uint64_t memory_of(const BlockHead& head) {
+std::uint64_t memory_of(const BlockHead& head, bool issue) {
     std::uint64_t bytes = head.records * sizeof(Record) + head.lane_accesses * sizeof(std::uint32_t) +
                           std::uint64_t{head.warps} * sizeof(WarpTrace);
     for (const auto& size : head.sizes) bytes += size.raw;
+    if (issue) bytes += (2 * head.records + head.warps) * sizeof(IssueStep);
     return bytes;
 }
 
 BlockHead Decoder::decode(const Header& header, std::span<const std::uint8_t> block, const Origin& origin,
                           const MemoryBudget& budget, std::vector<WarpTrace>& out) {
-    const BlockHead head = parse_block_head(block, origin);
+    const BlockHead head = parse_block_head(block, header.issue, origin);
     check_sealed(block, origin, "block", salvage);
-    budget.check(memory_of(head), origin.path, "records of a block");
+    budget.check(memory_of(head, header.issue), origin.path, "records of a block");
     origin_ = origin;
     const std::uint8_t* stored = block.data() + format::block_head_bytes;
     for (unsigned s = 0; s < format::streams; ++s) {

@@ -6,6 +6,7 @@
 #include "traces/block_streams.hpp"
 #include "traces/known_symbols.hpp"
 #include "traces/lane_stack.hpp"
+#include "traces/record_rules.hpp"
 #include "traces/symbol_search.hpp"
 #include "traces/writer.hpp"
 
@@ -54,6 +55,8 @@ Block Encoder::encode(const Header& header, std::span<const WarpTrace> warps, st
             known_.write(header, schedule, warps[i], symbols[i], streams_);
         else
             search_.write(header, schedule, warps[i], streams_);
+        check_issue(header, warps[i]);
+        if (header.issue) streams_.issue(warps[i]);
     }
     block.bytes = streams_.assemble(
         {0, block.launch, block.first_warp, block.warps, block.records, block.lane_accesses, block.rays, {}});

@@ -20,7 +20,7 @@ void store_block_head(const BlockHead& head, std::uint8_t* to) {
     }
 }
 
-BlockHead parse_block_head(std::span<const std::uint8_t> block, const Origin& origin) {
+BlockHead parse_block_head(std::span<const std::uint8_t> block, bool issue, const Origin& origin) {
     constexpr std::size_t frame = format::block_head_bytes + format::checksum_bytes;
     if (block.size() < frame)
         refuse(origin, "block", fmt::format("at least {} bytes", frame), fmt::format("{}", block.size()));
@@ -42,12 +42,13 @@ BlockHead parse_block_head(std::span<const std::uint8_t> block, const Origin& or
     bound(40, "rays", head.rays, format::max_block_lanes - head.lane_accesses);
 
     const std::uint64_t symbols = head.lane_accesses + head.rays + std::uint64_t{warp_lanes} * head.warps;
+    const std::uint64_t control =
+        (issue ? format::max_control_bytes_issue : format::max_control_bytes) * (head.records + head.warps);
     std::uint64_t end = format::block_head_bytes;
     for (unsigned s = 0; s < format::streams; ++s) {
         BlockHead::Size& size = head.sizes[s];
         size = {load<std::uint32_t>(p + 48 + 8 * s), load<std::uint32_t>(p + 52 + 8 * s)};
-        bound(48 + 8 * s, "raw stream size", size.raw,
-              s == format::control ? 16 * (head.records + head.warps) : symbols);
+        bound(48 + 8 * s, "raw stream size", size.raw, s == format::control ? control : symbols);
         bound(52 + 8 * s, "stored stream size", size.stored, block.size() - format::checksum_bytes - end);
         if ((size.raw == 0) != (size.stored == 0))
             refuse(origin + 48 + 8 * s, "stream sizes of the block", "both zero or none",

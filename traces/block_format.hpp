@@ -24,7 +24,8 @@ struct BlockHead {
 
 void store_block_head(const BlockHead&, std::uint8_t* to);
 
-/// Reads and bounds the head at the front of `block`. Does not look at the checksum.
-BlockHead parse_block_head(std::span<const std::uint8_t> block, const Origin&);
+/// Reads and bounds the head at the front of `block`, of a trace with issue steps or without. Does not look at the
+/// checksum.
+BlockHead parse_block_head(std::span<const std::uint8_t> block, bool issue, const Origin&);
 
 }  // namespace raycache::traces

@@ -27,6 +27,16 @@ void BlockStreams::record(const Schedule& schedule, const Record& record) {
     }
 }
 
+void BlockStreams::issue(const WarpTrace& warp) {
+    append_varint(control_, static_cast<std::uint32_t>(warp.issue.size()));
+    std::uint32_t access = 0;
+    for (const IssueStep& step : warp.issue) {
+        append_varint(control_, step.access - std::exchange(access, step.access));
+        append_varint(control_, step.needs == 0 ? 0 : step.access - step.needs + 1);
+        append_varint(control_, step.instructions);
+    }
+}
+
 Bytes BlockStreams::assemble(BlockHead head) const {
     const auto until = [](const Bytes& buffer, const std::uint8_t* end) {
         return std::span(buffer.data(), static_cast<std::size_t>(end - buffer.data()));

@@ -50,6 +50,9 @@ public:
         if (run_ != 0) append_varint(control_, std::exchange(run_, 0));
     }
 
+    /// Behind end_warp(): the warp's issue steps.
+    void issue(const WarpTrace&);
+
     /// Compresses the streams into a block. `head` says what is in it; its sizes are filled in.
     Bytes assemble(BlockHead head) const;
 

@@ -12,7 +12,7 @@ namespace raycache::traces::format {
 
 using namespace std::string_view_literals;
 
-inline constexpr std::uint32_t version = 3;  ///< the newest
+inline constexpr std::uint32_t version = 4;  ///< the newest
 
 inline constexpr std::string_view file_magic = "RCTRACE\x1a"sv;
 inline constexpr std::string_view block_magic = "RCBLOCK\x1a"sv;
@@ -62,6 +62,8 @@ inline constexpr std::uint64_t max_links = std::uint64_t{1} << 28;  ///< in one 
 inline constexpr std::uint32_t max_provenance_bytes = 1u << 16;
 inline constexpr std::uint32_t max_block_warps = 1u << 20;
 inline constexpr std::uint64_t max_block_records = std::uint64_t{1} << 25;
+/// Raw bytes of the control stream for each record and warp; with issue steps, of which an access has at most two.
+inline constexpr std::uint64_t max_control_bytes = 16, max_control_bytes_issue = 48;
 inline constexpr std::uint64_t max_block_lanes = std::uint64_t{1} << 25;  ///< lane accesses plus rays
 
 }  // namespace raycache::traces::format

@@ -70,6 +70,7 @@ struct Header {
     /// Kernels of a launch, one after the other, each with the same number of warps: a kernel begins when its
     /// predecessor has ended, and sees what that wrote. Divides warps_per_launch.
     std::uint32_t kernels_per_launch = 1;
+    bool issue = false;  ///< warps say what they wait for, and what they issue beside accesses (WarpTrace::issue)
 
     std::uint32_t warps_per_kernel() const { return warps_per_launch / kernels_per_launch; }
     bool operator==(const Header&) const = default;

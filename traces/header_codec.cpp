@@ -50,6 +50,8 @@ void check_kernels(const Origin& origin, std::uint64_t kernels, std::uint64_t wa
                fmt::format("{}", kernels), recapture);
 }
 
+constexpr std::uint32_t issue_version = 4;  // the first that has WarpTrace::issue
+
 /// The lowest version that can say what the header says.
 std::uint32_t version_of(const Header& header) {
     const Provenance none;
@@ -58,9 +60,9 @@ std::uint32_t version_of(const Header& header) {
     std::uint32_t version = plain ? 1 : 2;
     for (const Region& r : header.regions) {
         version = std::max(version, is_known(r.kind) ? role_of(r.kind).version : 2);
-        if (!r.pages.empty()) version = 3;
+        if (!r.pages.empty()) version = std::max(version, 3u);
     }
-    return version;
+    return header.issue ? issue_version : version;
 }
 
 void check_links(const Header& header, unsigned self) {
@@ -98,7 +100,8 @@ Bytes encode_header(const Header& header) {
     append(out, static_cast<std::uint32_t>(header.launches.size()));
     append(out, header.warps_per_launch);
     append(out, static_cast<std::uint32_t>(provenance.size()));
-    append(out, std::uint64_t{version == 1 ? 0 : header.kernels_per_launch});
+    append(out, version == 1 ? std::uint32_t{0} : header.kernels_per_launch);
+    append(out, std::uint32_t{header.issue});
     for (const std::uint32_t launch : header.launches) append(out, launch);
 
     Bytes tables, pages;
@@ -147,7 +150,7 @@ std::uint64_t header_bytes(std::span<const std::uint8_t> front, std::uint64_t fi
         refuse(origin + 12, "reserved bits", "0", fmt::format("{:#010x}", reserved), recapture);
     if (const auto reserved = load<std::uint64_t>(front.data() + 40); version == 1 && reserved != 0)
         refuse(origin + 40, "reserved bits", "0", hex64(reserved), recapture);
-    if (const auto reserved = load<std::uint32_t>(front.data() + 44); reserved != 0)
+    if (const auto reserved = load<std::uint32_t>(front.data() + 44); reserved > (version >= issue_version ? 1u : 0u))
         refuse(origin + 44, "reserved bits", "0", fmt::format("{:#010x}", reserved), recapture);
     const auto size = load<std::uint64_t>(front.data() + 16);
     bound(origin + 16, "size of the head", size, fixed_header_bytes + format::checksum_bytes, file_bytes);
@@ -174,6 +177,7 @@ Header decode_header(std::span<const std::uint8_t> head, const Origin& origin, M
     Header header;
     header.warps_per_launch = warps;
     header.kernels_per_launch = kernels;
+    header.issue = load<std::uint32_t>(p + 44) != 0;
     for (std::uint32_t i = 0; i < launches; ++i)
         header.launches.push_back(load<std::uint32_t>(p + fixed_header_bytes + 4 * std::size_t{i}));
     header.provenance =

@@ -3,7 +3,8 @@
 
 usage: traces/read_trace.py FILE          one line per warp and the digest of the dump
        traces/read_trace.py FILE --dump   every record, as text
-As a module, raycache.traces where installed: Trace(path).warps() yields (launch, warp, [(mask, region, ray, bounce, elements), ...])."""
+As a module, raycache.traces where installed: Trace(path).warps() yields (launch, warp, [(mask, region, ray, bounce, elements), ...]);
+where issue is true, Trace.steps is then [(access, needs, instructions), ...] of that warp (record.hpp, IssueStep)."""
 import struct
 import sys
 
@@ -39,10 +40,11 @@ def check_sealed(whole, what):
 class Trace:
     def __init__(self, path):
         self.file = open(path, "rb").read()
-        magic, version, reserved, size, regions, launches, self.warps_per_launch, text, kernels, reserved2 = (
+        magic, version, reserved, size, regions, launches, self.warps_per_launch, text, kernels, issue = (
             struct.unpack_from("<8sIIQIIIIII", self.file))
-        require(magic == b"RCTRACE\x1a" and version in (1, 2, 3), "no trace of version 1 to 3")
-        require(reserved == 0 and reserved2 == 0 and (version >= 2 or kernels == 0), "reserved bits set")
+        require(magic == b"RCTRACE\x1a" and version in (1, 2, 3, 4), "no trace of version 1 to 4")
+        require(reserved == 0 and issue <= (version >= 4) and (version >= 2 or kernels == 0), "reserved bits set")
+        self.issue, self.steps = issue == 1, []
         self.kernels_per_launch = kernels if version >= 2 else 1
         require(kernels > 0 or version == 1, "no kernel")
         require(self.warps_per_launch % self.kernels_per_launch == 0, "kernels of unequal size")
@@ -109,7 +111,7 @@ class Block:
             streams.append(iter(unzip(data[at:at + stored], raw)))
             at += stored
         self.control, self.linked, self.other, *self.literal = streams
-        self.regions = trace.regions
+        self.trace, self.regions = trace, trace.regions
 
     def number(self, size):
         return int.from_bytes(bytes(next(self.control) for _ in range(size)), "little")
@@ -125,7 +127,17 @@ class Block:
 
     def warps(self):
         for i in range(self.count):
-            yield self.launch, self.first + i, list(self.records())
+            records = list(self.records())
+            self.trace.steps = list(self.steps()) if self.trace.issue else []
+            yield self.launch, self.first + i, records
+
+    def steps(self):
+        access = 0
+        for _ in range(self.varint()):
+            access += self.varint()
+            back, instructions = self.varint(), self.varint()
+            require(back <= access, "an issue step waits for a later access")
+            yield access, access - back + 1 if back else 0, instructions
 
     def successor(self, lane, symbol, links, after):
         """What the lane reads next: (region, element), or None at the end of its ray."""
@@ -220,6 +232,8 @@ def dump(trace):
         yield f"launch {launch} warp {warp}"
         for mask, region, ray, bounce, elements in records:
             yield " ".join([f"{mask:08x} {region} {ray} {bounce}"] + [str(e) for e in elements])
+        for access, needs, instructions in trace.steps:
+            yield f"step {access} {needs} {instructions}"
 
 
 def main():

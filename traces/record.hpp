@@ -4,6 +4,7 @@
 // launch is a sequence of warps in dispatch order; a warp is a sequence of records. A record is either
 //   * a warp access: the lanes of `mask` each read one whole object (a node, a triangle, a texel) of one region, or
 //   * a ray start: the lanes of `mask` begin a ray of the given kind. It reads no memory; it only counts rays.
+// A trace of a program's instructions also says what else a warp issues, and which access waits for which (IssueStep).
 // The trace says *what* is read; how a GPU splits an object into load instructions is the business of its preset.
 #pragma once
 
@@ -42,6 +43,17 @@ struct Record {
 };
 static_assert(sizeof(Record) == 8);
 
+/// What a warp does beside its accesses, where the trace says so: it waits until what one access of its own reads is
+/// there, and then issues instructions that access no memory of the trace. A warp issues in order: what stands behind a
+/// step issues after it.
+struct IssueStep {
+    std::uint32_t access = 0;        ///< accesses (records) of the warp before this step
+    std::uint32_t needs = 0;         ///< 0: it waits for nothing; n: for access number n - 1, which is one of those
+    std::uint32_t instructions = 0;  ///< that follow
+
+    bool operator==(const IssueStep&) const = default;
+};
+
 /// All records of one warp in one launch.
 struct WarpTrace {
     std::uint32_t launch = 0;  ///< ordinal into Header::launches
@@ -50,10 +62,15 @@ struct WarpTrace {
     /// For each access record in order, popcount(mask) element indices, lowest lane first. The byte address of an
     /// element is Region::base + index * Region::stride.
     std::vector<std::uint32_t> elements;
+    /// Of a trace that says what waits for what (Header::issue), of a warp that accesses anything: its steps in order,
+    /// at most two an access and one more, the last one behind all accesses. Else none: each access then waits for the
+    /// one before it, and a GPU file says how many instructions a visit takes.
+    std::vector<IssueStep> issue = {};
 
     void clear() {
         records.clear();
         elements.clear();
+        issue.clear();
     }
     bool operator==(const WarpTrace&) const = default;
 };

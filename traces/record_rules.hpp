@@ -31,4 +31,7 @@ inline void check_elements(const WarpTrace& warp, std::size_t accesses) {
                       fmt::format("expected {} elements for its masks, found {}", accesses, warp.elements.size()));
 }
 
+/// Rules for the warp's issue steps, in a trace that has them or not.
+void check_issue(const Header& header, const WarpTrace& warp);
+
 }  // namespace raycache::traces

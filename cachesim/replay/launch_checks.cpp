@@ -7,6 +7,7 @@
 #include "cachesim/gpus/limits.hpp"
 #include "cachesim/replay/quick_check.hpp"
 #include "traces/error.hpp"
+#include "traces/issue_rules.hpp"
 
 namespace raycache::cachesim {
 
@@ -49,6 +50,13 @@ const Gpu& checked_timed(const Gpu& gpu) {
 }
 
 void check(const traces::WarpTrace& warp, const std::vector<traces::Region>& regions) {
+    if (!warp.issue.empty()) {
+        const auto accesses = static_cast<std::uint32_t>(std::count_if(
+            warp.records.begin(), warp.records.end(), [](const traces::Record& r) { return r.is_access(); }));
+        if (const char* fault = traces::issue_fault(warp.issue, accesses))
+            throw Error(fmt::format("launch {}, warp {} of the trace: {}; write the trace again", warp.launch,
+                                    warp.warp, fault));
+    }
     static IsRight* const is_right = quick_check(best_instruction_set());
     if (is_right && is_right(warp, regions)) return;
     const auto where = [&] { return fmt::format("launch {}, warp {} of the trace", warp.launch, warp.warp); };

@@ -33,7 +33,8 @@ class AccelSim(ProgramTest):
         self.path("good.traceg").write_text(HEAD + begin + load + end)
         self.succeeds("import", "good.traceg", "-o", "good.rct")
         for bad in (load.replace("R4 LDG", "Q4 LDG"), load.replace("0x1000", "0x1002"), load.replace("4 1 0x", "4 3 0x"),
-                    load.replace("00000003", "00000005"), load[:30] + "\n", load.replace("1 R4 LDG", "2 R4 LDG")):
+                    load.replace("00000003", "00000005"), load[:30] + "\n", load.replace("1 R4 LDG", "2 R4 LDG"),
+                    load.replace("1 R4 4", "1 R256 4")):
             self.path("bad.traceg").write_text(HEAD + begin + bad + end)
             self.refuses(1, "import", "bad.traceg", "-o", "bad.rct", mentions=["bad.traceg: line 12: "])
         self.path("cut.traceg").write_text(HEAD + begin + load)
@@ -50,7 +51,7 @@ class AccelSim(ProgramTest):
             self.assertEqual([self.totals("k.rct")[key] for key in ("loads", "warp_accesses", "lane_accesses", "sectors")], [1, 1, 2, 2])
             row = self.succeeds("replay", "k.rct", "--gpu", "rtx-3070", "--timed", "--json").json["rows"][0]
             self.assertEqual([row["loads"], row["l1"]["requests"], row["dram_sectors"]], [1, 2, 2])
-            self.succeeds("export", "k.rct", "--format", "accel-sim", "-o", "again.traceg")
+            self.warns("export", "k.rct", "--format", "accel-sim", "-o", "again.traceg")
             self.succeeds("import", "again.traceg", "-o", "k.rct")
             self.assertEqual(self.totals("k.rct")["sectors"], 2)
 
@@ -76,6 +77,34 @@ class AccelSim(ProgramTest):
         self.path("a.din").write_text("0 7f5000000000\n")
         self.refuses(2, "import", "a.din", "--stores", "-o", "x.rct", mentions=["--stores", "expected an Accel-Sim trace"])
 
+    def cycles(self, *lines, options=()):
+        self.path("k.traceg").write_text(self.kernel(*lines, "f0 ffffffff 0 EXIT 0 0 0"))
+        self.succeeds("import", "k.traceg", *options, "-o", "k.rct")
+        row = self.succeeds("replay", "k.rct", "--gpu", "rtx-3070", "--timed", "--json").json["rows"][0]
+        self.assertEqual(row["loads"], 2)
+        return row["cycles"], row["instructions"]
+
+    def test_loads_wait_for_what_their_registers_say_and_instructions_are_those_of_the_file(self):
+        first, free = "0 1 1 R4 LDG.E 1 R2 4 0 0x100000 0", "10 1 1 R8 LDG.E 1 R6 4 0 0x900000 0"
+        bound, add = free.replace("R6", "R4"), "8 1 1 R20 FADD 1 R4 0 0"
+        (alone, count), (chained, _) = self.cycles(first, free), self.cycles(first, bound)
+        self.assertEqual(count, 2)  # EXIT ends the warp
+        self.assertTrue(self.succeeds("info", "k.rct", "--json").json["issue"])
+        latency = chained - alone
+        self.assertGreater(latency, 400)  # of DRAM: nothing is overlapped
+        held_up, count = self.cycles(first, add, free)
+        self.assertAlmostEqual(held_up, chained, delta=10)
+        self.assertEqual(count, 3)
+        busy, count = self.cycles(first, *["8 1 1 R20 FADD 1 R30 0 0"] * 2000, free)
+        self.assertEqual(count, 2002)
+        self.assertGreater(busy, alone + 1500)
+        traversal, _ = self.cycles(first, free, options=["--traversal"])
+        self.assertGreaterEqual(traversal, chained)
+        self.assertFalse(self.succeeds("info", "k.rct", "--json").json["issue"])
+        self.cycles(first, free)
+        self.assertIn("each object waits for the one before",
+                      self.warns("export", "k.rct", "--format", "accel-sim", "-o", "again.traceg").stderr)
+
     def test_a_list_of_kernels_is_a_launch_a_kernel(self):
         self.path("traces").mkdir()
         for i in (1, 2):
@@ -99,6 +128,7 @@ class AccelSim(ProgramTest):
         self.refuses(1, "import", "a.lackey", "-o", "a.rct", mentions=["Lackey", "din, csv, u64"])
         self.refuses(2, "import", "a.din", "--fuse", "-o", "a.rct", mentions=["expected an Accel-Sim trace"])
         self.refuses(2, "export", "a.rct", "--format", "accel-sim", "--binary-version", "121", "-o", "x", mentions=["120"])
+        self.refuses(2, "import", "a.din", "--traversal", "-o", "a.rct", mentions=["expected an Accel-Sim trace"])
         self.succeeds("export", "a.rct", "--format", "accel-sim", "--binary-version", "120", "-o", "x.traceg")
 
 

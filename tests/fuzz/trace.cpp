@@ -2,6 +2,7 @@
 // blocks' streams hold before they are compressed; blind ones would nearly all end at a checksum.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <random>
@@ -10,6 +11,7 @@
 #include "tests/fuzz/fuzz.hpp"
 #include "traces/block_format.hpp"
 #include "traces/compression.hpp"
+#include "traces/issue_rules.hpp"
 #include "traces/reader.hpp"
 #include "traces/verify.hpp"
 
@@ -141,6 +143,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             read.warps += warps.size();
             for (const WarpTrace& warp : warps) {
                 std::size_t element = 0;
+                const auto accesses = static_cast<std::uint32_t>(std::count_if(
+                    warp.records.begin(), warp.records.end(), [](const Record& r) { return r.is_access(); }));
+                fuzz::require(warp.issue.empty() || !issue_fault(warp.issue, accesses), "issue steps keep their rules");
                 read.records += warp.records.size();
                 for (const Record& record : warp.records)
                     for (unsigned n = record.is_access() ? record.lanes() : 0; n > 0; --n)

@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         traces::ImportSettings settings;
         settings.fuse = fuse;
         settings.stores = fuse == traces::Fuse::independent;
+        settings.traversal = size % 4 == 3;
         settings.program = settings.command = "fuzz";
         if (fuzz::accepts([&] { traces::import_traceg(path, output, settings); })) traces::verify(output);
     }

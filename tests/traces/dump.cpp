@@ -13,9 +13,10 @@ using namespace raycache::traces;
 
 namespace {
 
-/// As it stands in the file: of version 2 if that of version 1 would not say all, or not of the regions.
+/// As it stands in the file: of version 2 if version 1 would not say all.
 std::string provenance_json(const Header& header) {
     bool newer = header.provenance.execution != Provenance{}.execution;
+    newer |= header.issue;
     for (const Region& region : header.regions) newer |= !region.pages.empty();
     return provenance_to_json(header.provenance, newer ? 2 : 1);
 }
@@ -50,6 +51,8 @@ std::string dump_trace(const std::string& path) {
                 for (unsigned n = r.is_access() ? r.lanes() : 0; n > 0; --n) text += fmt::format(" {}", *element++);
                 text += '\n';
             }
+            for (const IssueStep& step : warp.issue)
+                text += fmt::format("step {} {} {}\n", step.access, step.needs, step.instructions);
         }
     }
     return text;

@@ -55,6 +55,22 @@ Sample pages() {
     return sample;
 }
 
+/// Loads of which the second and the third wait for the first, and the warp's end for the third; and a warp without any.
+Sample issue() {
+    Sample sample;
+    sample.header.provenance.program = "issue";
+    sample.header.launches = {0};
+    sample.header.warps_per_launch = 2;
+    sample.header.issue = true;
+    sample.header.regions = {{ObjectKind::node, 0x7f5000000000u, 16, 16, 100, 0, {}}};
+    WarpTrace warp{0, 0, {}, {0, 1, 50, 99, 7, 7}};
+    warp.records.push_back({3, ray_start, RayType::camera, 0, 0});
+    for (unsigned i = 0; i < 3; ++i) warp.records.push_back({3, 0, RayType::camera, 0, 0});
+    warp.issue = {{0, 0, 3}, {1, 1, 300}, {3, 0, 1}, {3, 3, 70000}};
+    sample.warps = {warp, {0, 1, {}, {}}};
+    return sample;
+}
+
 struct Good {
     std::string name;
     std::function<Sample()> make;
@@ -84,6 +100,7 @@ std::vector<Good> good_files() {
              return wavefront_buffers({5, 0, 0, 2, 2});
          }},
         {"pages", pages},
+        {"issue", issue},
     };
 }
 
@@ -117,10 +134,12 @@ std::vector<Bad> bad_files() {
         {"empty", [](Bytes& b) { b.clear(); }, "offset 0: magic: expected RCTRACE, found an empty file"},
         {"wrong-magic", [](Bytes& b) { b[0] = 'X'; },
          "offset 0: magic: expected RCTRACE, found other bytes; this is no raycache trace"},
-        {"newer-version", [](Bytes& b) { b[8] = 4; },
-         "offset 8: format version: expected at most 3, found 4; this raycache reads version 3: install a newer one to "
-         "read version 4"},
-        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 3, found 0"},
+        {"newer-version", [](Bytes& b) { b[8] = 5; },
+         "offset 8: format version: expected at most 4, found 5; this raycache reads version 4: install a newer one to "
+         "read version 5"},
+        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 4, found 0"},
+        {"issue-in-version-3", [](Bytes& b) { b[8] = 3, b[40] = 1, b[44] = 1, reseal_head(b); },
+         "offset 44: reserved bits: expected 0, found 0x00000001"},
         {"reserved-bit", head(12, 1), "offset 12: reserved bits: expected 0, found 0x00000001"},
         {"region-reserved-bit", head(region0 + 3, 1), "offset 55: reserved bits: expected 0, found 0x01"},
         {"flipped-head", [](Bytes& b) { b[140] ^= 1; }, "offset 0: checksum of the head"},

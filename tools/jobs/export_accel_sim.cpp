@@ -15,6 +15,10 @@ namespace {
 
 void write_kernel(const traces::Reader& reader, std::uint32_t launch, const traces::TracegSettings& settings,
                   const std::string& path, Observer& observer) {
+    if (reader.header().issue)
+        observer.warn(
+            "the trace says what its loads wait for and what other instructions there are; exported, each object waits "
+            "for the one before, and loads are all there is");
     traces::XzFile file(path);
     traces::TracegText text(reader.header(), settings, [&](std::string_view piece) { file.write(piece); });
     const Stage stage(observer, "write", reader.header().warps_per_launch, "warps");

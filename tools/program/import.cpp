@@ -25,7 +25,7 @@ using traces::TraceKind;
 
 struct ImportArguments {
     std::string input, output, format = "auto", null_lanes = "drop-loads";
-    bool fuse = false, no_fuse = false, stores = false;
+    bool fuse = false, no_fuse = false, stores = false, traversal = false;
     std::optional<std::uint32_t> access_bytes;
 };
 
@@ -51,6 +51,7 @@ std::string command_of(const ImportArguments& o) {
     if (o.fuse) text += " --fuse";
     if (o.no_fuse) text += " --no-fuse";
     if (o.stores) text += " --stores";
+    if (o.traversal) text += " --traversal";
     if (o.null_lanes != "drop-loads") text += " --null-lanes " + o.null_lanes;
     if (o.access_bytes) text += fmt::format(" --access-bytes {}", *o.access_bytes);
     return text;
@@ -117,10 +118,11 @@ void run(const ImportArguments& o) {
     const Stage stage(progress, "read");
     const TraceKind kind = o.format == "auto" ? traces::guess_trace_kind(o.input) : kinds.at(o.format);
     const bool addresses = kind != TraceKind::accel_sim && kind != TraceKind::rtwarp;
-    if (kind != TraceKind::accel_sim && (o.fuse || o.no_fuse || o.stores || o.null_lanes != "drop-loads"))
-        throw UsageError(
-            fmt::format("--fuse, --no-fuse, --stores or --null-lanes: expected an Accel-Sim trace, found {}",
-                        addresses ? "addresses" : "an RTWARP01 trace, whose objects are whole"));
+    if (kind != TraceKind::accel_sim &&
+        (o.fuse || o.no_fuse || o.stores || o.traversal || o.null_lanes != "drop-loads"))
+        throw UsageError(fmt::format(
+            "--fuse, --no-fuse, --stores, --traversal or --null-lanes: expected an Accel-Sim trace, found {}",
+            addresses ? "addresses" : "an RTWARP01 trace, whose objects are whole"));
     if (!addresses && o.access_bytes) throw UsageError("--access-bytes: expected addresses (din, csv, u64)");
     switch (kind) {
         case TraceKind::rtwarp:
@@ -139,6 +141,7 @@ void run(const ImportArguments& o) {
     settings.fuse = o.fuse ? Fuse::always : o.no_fuse ? Fuse::never : Fuse::independent;
     settings.null_lanes = null_lanes.at(o.null_lanes);
     settings.stores = o.stores;
+    settings.traversal = o.traversal;
     settings.program = program_name;
     settings.command = command_of(o);
     warn_of(o, traces::import_traceg(o.input, o.output, settings));
@@ -170,6 +173,10 @@ void add_import(Program& program) {
                       "each load by itself. Neither: one access where the loads are of 16 B and their registers show "
                       "that none waits for another");
     command->add_flag("--stores", o->stores, "stores of global memory, too, which write through L1 to the last level");
+    command->add_flag(
+        "--traversal", o->traversal,
+        "loads as visits of a traversal: each waits for the one before, and the GPU file says what a visit "
+        "computes. Without it a load waits for what its registers say, and instructions are those of FILE");
     command
         ->add_option("--null-lanes", o->null_lanes,
                      "lanes that read address 0: leave out loads of nothing else (drop-loads), each such lane "

@@ -40,6 +40,7 @@ nlohmann::ordered_json as_json(const traces::Reader& reader, const Totals& total
     for (std::size_t i = 0; i < out["regions"].size(); ++i)
         if (const auto& pages = reader.header().regions[i].pages; !pages.empty())
             out["regions"][i]["pages"] = pages.count();
+    out["issue"] = reader.header().issue;
     out["rays"] = totals.rays;
     out["records"] = totals.records;
     out["lane_accesses"] = totals.lane_accesses;
@@ -80,6 +81,7 @@ std::string as_text(const traces::Reader& reader, const Totals& totals) {
         line("order", p.order);
         count("kernels", h.kernels_per_launch);
     }
+    line("waits", h.issue ? "by registers; instructions of the program" : "");
     line("sample indices", fmt::format("{}", fmt::join(h.launches, " ")));
     count("warps per launch", h.warps_per_launch);
     for (const traces::Region& r : h.regions)

@@ -49,20 +49,30 @@ std::vector<ImportedKernel> import_traceg(const std::string& input, const std::s
     };
     pass.read = [&](std::size_t launch, const LoadPass::Use& use) {
         ImportedKernel& kernel = kernels[launch];
+        AccessFuser fuser(settings.fuse);
         TracegOptions options;
         options.null_lanes = settings.null_lanes;
         options.stores = settings.stores;
         options.number_by_place = !kernel.kernel.in_order;
-        AccessFuser fuser(settings.fuse);
+        if (!settings.traversal)
+            options.warp_end = [&](std::uint64_t warp, std::vector<LoadStep>&& steps) {
+                fuser.end_warp(warp, steps, use);
+            };
         const bool in_order = kernel.kernel.in_order;
         TracegKernel found = parse_traceg(
-            kernel.file, [&](std::uint64_t warp, GlobalLoad& load) { fuser.add(warp, load, use); }, options);
+            kernel.file,
+            [&](std::uint64_t warp, GlobalLoad& load) {
+                if (settings.traversal) load.steps.clear();
+                fuser.add(warp, load, use);
+            },
+            options);
         fuser.flush(use);
         kernel.kernel = std::move(found);
         kernel.kernel.in_order &= in_order;
     };
 
     Header header;
+    header.issue = !settings.traversal;
     header.provenance.program = settings.program;
     header.provenance.command = settings.command;
     header.provenance.decorrelation = file_name(input);

@@ -14,12 +14,16 @@ namespace {
 constexpr unsigned most_destinations = 1, most_sources = 8;
 constexpr std::uint64_t window_bytes = std::uint64_t{1} << 24;  // of generic addresses that lead to other memory
 
-/// "R4", "UR4", "P0", "UP0", "RZ", "PT".
-bool is_register(std::string_view word) {
+constexpr unsigned zero_register = 255, not_numbered = 256;
+
+/// The number of "R4", "UR4", "P0", "UP0"; that of RZ for "RZ" and "PT"; not_numbered: it is no register.
+unsigned register_number(std::string_view word) {
     if (word.starts_with('U')) word.remove_prefix(1);
-    if (word == "RZ" || word == "PT") return true;
-    if (!word.starts_with('R') && !word.starts_with('P')) return false;
-    return word.size() > 1 && word.find_first_not_of("0123456789", 1) == std::string_view::npos;
+    if (word == "RZ" || word == "PT") return zero_register;
+    if (!word.starts_with('R') && !word.starts_with('P')) return not_numbered;
+    unsigned number = not_numbered;
+    const auto [end, error] = std::from_chars(word.data() + 1, word.data() + word.size(), number);
+    return error == std::errc{} && end == word.data() + word.size() && number <= zero_register ? number : not_numbered;
 }
 
 /// Bulk copies of the tensor memory accelerator, whose addresses have a form of their own.
@@ -54,16 +58,26 @@ public:
         return value;
     }
 
-    /// Those that are R and a number are added to `found`, if it is given.
+    /// A whole number, or 0x and a hexadecimal one; 0 if the next word is none.
+    std::uint64_t number_or_0() {
+        std::string_view digits = word("immediate");
+        const bool hexadecimal = digits.starts_with("0x");
+        if (hexadecimal) digits.remove_prefix(2);
+        std::uint64_t value = 0;
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), value, hexadecimal ? 16 : 10);
+        return error == std::errc{} && end == digits.data() + digits.size() ? value : 0;
+    }
+
+    /// Those that are R and a number, but for RZ, are added to `set`, if it is given.
     void registers(const char* what, unsigned most, RegisterSet* set = nullptr) {
         const auto count = number<unsigned>(what, 10);
         if (count > most) lines_.refuse(what, fmt::format("at most {}", most), fmt::format("{}", count));
         for (unsigned i = 0; i < count; ++i) {
             const std::string_view found = word("register");
-            if (!is_register(found)) lines_.refuse("register", "R, UR or P and a number", found);
-            unsigned number = 0;
-            const auto [end, error] = std::from_chars(found.data() + 1, found.data() + found.size(), number);
-            if (set && found[0] == 'R' && error == std::errc{} && number < set->size()) set->set(number);
+            const unsigned number = register_number(found);
+            if (number == not_numbered) lines_.refuse("register", "R, UR or P and a number up to 255", found);
+            if (set && found[0] == 'R' && number != zero_register) set->set(number);
         }
     }
 
@@ -137,7 +151,10 @@ InstructionLine parse_instruction(std::string_view line, const InstructionGramma
     words.registers("number of sources", most_sources, &load.read);
     const auto width = words.number<unsigned>("memory width", 10);
     found.has_addresses = width != 0 && load.mask != 0;
-    if (!found.has_addresses) return found;  // what follows has no meaning here
+    if (!found.has_addresses) {  // what follows has a meaning for few
+        if (width == 0 && !words.empty()) found.immediate = words.number_or_0();
+        return found;
+    }
     read_addresses(words, place, load.mask, load.addresses);
     if (!words.empty()) words.word("immediate");
     if (!words.empty() && grammar.version < 6)

@@ -23,6 +23,8 @@ struct InstructionLine {
     std::string_view opcode;     ///< "LDG.E.128.SYS"; part of the line
     bool has_addresses = false;  ///< memwidth is not 0 and lanes are active
     bool is_access = false;      ///< a load, or store, of global memory, with active lanes; only then is `load` told
+    /// Of an instruction without addresses: what stands behind its registers, where it is a number; else 0.
+    std::uint64_t immediate = 0;
 };
 
 /// `place`: where the line stands, for a refusal.

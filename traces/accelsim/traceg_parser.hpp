@@ -3,17 +3,16 @@
 // content.
 #pragma once
 
-#include <bitset>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-namespace raycache::traces {
+#include "traces/accelsim/register_set.hpp"
+#include "traces/accelsim/scoreboard.hpp"
 
-/// R0 to R255.
-using RegisterSet = std::bitset<256>;
+namespace raycache::traces {
 
 /// One load instruction of a warp: LDG, LDGSTS, or LD of global memory; or a store: STG, or ST there.
 struct GlobalLoad {
@@ -23,8 +22,11 @@ struct GlobalLoad {
     std::uint32_t bytes = 0;               ///< that each lane reads or writes: 1, 2, 4, 8, 16 or 32
     std::vector<std::uint64_t> addresses;  ///< of the active lanes, lowest lane first; multiples of `bytes`
     RegisterSet written;                   ///< from the destination on, those that `bytes` fill
-    RegisterSet read;     ///< the sources, each with the one behind it: an address takes two, and one is named
-    RegisterSet between;  ///< that other instructions of the warp since its load before have to do with
+    RegisterSet read;             ///< the sources, each with the one behind it: an address takes two, and one is named
+    RegisterSet between;          ///< that other instructions of the warp since its load before have to do with
+    std::vector<LoadStep> steps;  ///< what the warp waits for and issues since the one before
+    /// By which steps of the warp are to name it: loads and stores before it, unless the receiver gives another number.
+    std::uint32_t number = 0;
 };
 
 /// What becomes of lanes that read address 0: tracers write it where they lost the address.
@@ -40,6 +42,8 @@ struct TracegOptions {
     bool number_by_place = false;
     /// Stores are handed on, too; else they are left out.
     bool stores = false;
+    /// At the end of each warp: what it waits for and issues since its last load.
+    std::function<void(std::uint64_t warp, std::vector<LoadStep>&&)> warp_end = {};
 };
 
 struct TracegKernel {

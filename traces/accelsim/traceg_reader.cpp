@@ -6,6 +6,7 @@
 #include <bit>
 #include <charconv>
 #include <string>
+#include <utility>
 
 #include "traces/record.hpp"
 
@@ -124,8 +125,34 @@ void TracegReader::begin_warp(std::uint64_t number, const TextPlace& place) {
     if (number >= kernel_.warps_per_cta || seen_[number])
         place.refuse("warp", fmt::format("each of 0 to {} once", kernel_.warps_per_cta - 1), fmt::format("{}", number));
     seen_[number] = true;
+    end_warp();
+    in_warp_ = true;
+    exit_ = false;
+    handed_on_ = 0;
+    scoreboard_.begin_warp();
     warp_ = block_ * kernel_.warps_per_cta + number;
     between_.reset();
+}
+
+void TracegReader::end_warp() {
+    if (std::exchange(in_warp_, false) && options_.warp_end) options_.warp_end(warp_, scoreboard_.take());
+}
+
+/// An instruction that is not handed on; of it, load_ has the registers. The EXIT that ends a warp is no step: a trace of
+/// loads alone has no instructions.
+void TracegReader::other_instruction(const InstructionLine& line) {
+    const std::string_view name = line.opcode.substr(0, line.opcode.find('.'));
+    if (name == "LDGDEPBAR") scoreboard_.end_group();
+    if (name == "DEPBAR") scoreboard_.wait_for_groups(line.immediate);
+    exit_ = name == "EXIT";
+    if (!exit_) scoreboard_.instruction(load_.read | load_.written);
+}
+
+void TracegReader::hand_on() {
+    scoreboard_.wait(load_.read | load_.written);
+    load_.steps = scoreboard_.take();
+    load_.number = handed_on_++;
+    use_(warp_, load_);
 }
 
 /// Whether anything of load_ is left.
@@ -151,25 +178,31 @@ void TracegReader::instruction(std::string_view line, const TextPlace& place) {
     }
     first_instruction_ = false;
     const InstructionLine found = parse_instruction(line, grammar_, place, load_);
+    if (std::exchange(exit_, false)) scoreboard_.instruction({});  // of some lanes
     if (!found.is_access) {
         between_ |= load_.read | load_.written;
+        other_instruction(found);
         if (found.has_addresses) leave_out(found.opcode.substr(0, std::min<std::size_t>(found.opcode.find('.'), 16)));
         return;
     }
     if (load_.is_store) {
         between_ |= load_.read;
-        if (!drop_null_lanes()) return;
+        if (!drop_null_lanes()) return other_instruction(found);
         ++kernel_.stores;
-        use_(warp_, load_);
+        hand_on();
         return;
     }
     load_.between = between_;
     between_.reset();
-    if (!drop_null_lanes()) return;
+    if (!drop_null_lanes()) return other_instruction(found);
     ++kernel_.loads;
     kernel_.bypassing += found.opcode.find(".STRONG.") != std::string_view::npos ||
                          found.opcode.find(".BYPASS") != std::string_view::npos;
-    use_(warp_, load_);
+    hand_on();
+    if (found.opcode.starts_with("LDGSTS"))
+        scoreboard_.async_copy(load_.number);
+    else
+        scoreboard_.load(load_.written, load_.number);
 }
 
 /// No instruction set has so many: a file without end of made up ones must not fill the memory.

@@ -30,7 +30,10 @@ public:
     void coordinates(std::array<std::uint64_t, 3>, const TextPlace&);  ///< at most once a block
     void begin_warp(std::uint64_t number, const TextPlace&);           ///< of the block
     void instruction(std::string_view line, const TextPlace&);
-    void end_block() { in_block_ = false; }
+    void end_block() {
+        end_warp();
+        in_block_ = false;
+    }
 
     /// `place`: the end of the file.
     TracegKernel finish(const TextPlace& place);
@@ -44,6 +47,9 @@ public:
     static std::array<std::uint64_t, 3> triple(std::string_view what, std::string_view text, const TextPlace&);
 
 private:
+    void end_warp();
+    void other_instruction(const InstructionLine&);
+    void hand_on();
     void leave_out(std::string_view opcode);
     bool drop_null_lanes();
 
@@ -58,7 +64,11 @@ private:
     bool in_block_ = false;
     std::uint64_t warp_ = 0;
     std::vector<bool> seen_;  ///< warps of the block
+    bool in_warp_ = false;
+    bool exit_ = false;  ///< the last instruction was EXIT
     GlobalLoad load_;
+    std::uint32_t handed_on_ = 0;  ///< loads and stores of the warp
+    Scoreboard scoreboard_;
     RegisterSet between_;  ///< GlobalLoad::between of the load that comes next
 };
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t most_block_lanes = std::uint64_t{1} << 20;
 constexpr std::size_t block_warps = 64, block_empty_warps = std::size_t{1} << 16;
 /// Of a record and its lanes, in the warp and while it is encoded.
-constexpr std::uint64_t record_bytes = 32, lane_bytes = 24;
+constexpr std::uint64_t record_bytes = 32, lane_bytes = 24, step_bytes = 32;
 
 class LaunchWriter {
 public:
@@ -51,6 +51,10 @@ private:
                 fmt::format("{}: expected the same loads when it was read again, found others; nothing may "
                             "change the file while it is read",
                             pass_.file));
+        if (access.mask == 0) {
+            if (const auto at = open_.find(number); at != open_.end()) end_steps(at->second, access.steps);
+            return;
+        }
         budget_.charge(record_bytes + lane_bytes * access.lanes(), pass_.file, "loads of its warps");
         if (number != current_ || !warp_) {
             warp_ = &open_[number];
@@ -62,8 +66,28 @@ private:
                                     pass_.file, number, format::max_block_lanes / 2));
         if (warp.records.empty()) warp.records.push_back({0, ray_start, RayType::camera, 0, 0});
         warp.records.front().mask |= access.mask;
+        add_steps(warp, access.steps);
         const std::uint8_t region = plan_.place(access, warp.elements);
         warp.records.push_back({access.mask, region, RayType::camera, 0, 0});
+    }
+
+    /// The first record is a ray start.
+    static std::uint32_t accesses_of(const WarpTrace& warp) {
+        return static_cast<std::uint32_t>(warp.records.empty() ? 0 : warp.records.size() - 1);
+    }
+
+    /// They stand before the next access.
+    void add_steps(WarpTrace& warp, const std::vector<IssueStep>& steps) {
+        budget_.charge(step_bytes * steps.size(), pass_.file, "loads of its warps");
+        for (const IssueStep& step : steps) warp.issue.push_back({accesses_of(warp), step.needs, step.instructions});
+    }
+
+    /// The last ones; there is at least one.
+    void end_steps(WarpTrace& warp, const std::vector<IssueStep>& steps) {
+        if (steps.empty())
+            add_steps(warp, {{}});
+        else
+            add_steps(warp, steps);
     }
 
     void finish_warps() {
@@ -100,7 +124,8 @@ private:
         writer_.append(encode_block(header_, block_));
         for (const WarpTrace& warp : block_) {
             const std::size_t starts = warp.records.empty() ? 0 : 1;
-            budget_.release(record_bytes * (warp.records.size() - starts) + lane_bytes * warp.elements.size());
+            budget_.release(record_bytes * (warp.records.size() - starts) + lane_bytes * warp.elements.size() +
+                            step_bytes * warp.issue.size());
         }
         block_.clear();
         lanes_ = 0;
@@ -129,6 +154,7 @@ void write_loads(const LoadPass& pass, Header header, const std::string& output)
     header.launches.clear();
     for (std::size_t launch = 0; launch < pass.launches; ++launch) {
         pass.read(launch, [&](std::uint64_t, const LoadAccess& access) {
+            if (access.mask == 0) return;
             any = true;
             plan.add(access);
         });

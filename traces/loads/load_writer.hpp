@@ -20,7 +20,8 @@ struct LoadKernel {
 
 /// Where the accesses of a launch come from.
 struct LoadPass {
-    /// Of the warp of that number. Warps of a CTA may come in any order, CTAs ascend.
+    /// Of the warp of that number. Warps of a CTA may come in any order, CTAs ascend. Where Header::issue is set, each
+    /// warp ends with an access of no lane, which holds its last steps.
     using Use = std::function<void(std::uint64_t warp, const LoadAccess&)>;
 
     /// Calls use() with every access of launch i. Twice for each launch: the same both times.

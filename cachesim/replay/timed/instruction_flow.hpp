@@ -19,6 +19,9 @@
 
 namespace raycache::cachesim {
 
+/// From issue to the port: register, collector, register, and the load unit's own register. Part of l1_latency.
+inline constexpr Cycle issue_to_port = 4;
+
 class OperandCollectors {
 public:
     enum Kind : std::uint8_t { arithmetic, load };
@@ -29,6 +32,7 @@ public:
         std::uint32_t flight = 0;
         std::uint32_t number = 0;  ///< of its kind, of the visit
         Kind kind = arithmetic;
+        std::uint32_t place = 0;  ///< of a load's visit, in PendingAccesses
     };
 
     /// At most 64 schedulers and `most` collectors of each.
@@ -38,8 +42,8 @@ public:
     bool empty() const { return inside_ == 0; }
 
     bool takes(unsigned scheduler, Kind kind) const { return !(issued_[kind] >> scheduler & 1); }
-    void issue(unsigned scheduler, std::uint32_t flight, std::uint32_t number, Kind kind) {
-        of_[scheduler].issued[kind] = {age_++, flight, number, kind};
+    void issue(unsigned scheduler, std::uint32_t flight, std::uint32_t number, Kind kind, std::uint32_t place = 0) {
+        of_[scheduler].issued[kind] = {age_++, flight, number, kind, place};
         issued_[kind] |= std::uint64_t{1} << scheduler;
         ++inside_;
     }

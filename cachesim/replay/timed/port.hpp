@@ -68,6 +68,8 @@ public:
     Cycle free() const { return free_; }
 
     void push(const Load& load) { queue_.push(load); }
+    /// The data lie there from now on.
+    void use(LoadData* data) { data_ = data; }
     /// The port takes nothing before this cycle.
     void hold(Cycle until) { free_ = until; }
 

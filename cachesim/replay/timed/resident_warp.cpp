@@ -14,6 +14,10 @@ void ResidentWarp::begin(std::shared_ptr<const traces::WarpTrace> trace, Cycle s
     elements_ = trace_->elements.data();
     left_ = 0;
     among_triangles_ = false;
+    accesses_ = 0;
+    const bool steps = !trace_->issue.empty();
+    step_ = steps ? trace_->issue.data() : nullptr;
+    step_end_ = steps ? step_ + trace_->issue.size() : nullptr;
     since_ = since;
 }
 
@@ -30,7 +34,10 @@ std::uint32_t ResidentWarp::leaf(const TimedRules& rules, std::uint32_t region, 
 std::optional<ResidentWarp::Access> ResidentWarp::next(const TimedRules& rules) {
     if (next_ == end_) return std::nullopt;
     const traces::Record& record = *next_;
-    if (left_ == 0) left_ = record.mask;
+    if (left_ == 0) {
+        left_ = record.mask;
+        ++accesses_;
+    }
     Access access;
     access.region = record.region;
     access.mask = first_vector(left_, rules.gpu.simd_width);
@@ -42,7 +49,10 @@ std::optional<ResidentWarp::Access> ResidentWarp::next(const TimedRules& rules) 
             if (!next_->is_access()) continue;
             if (next_->region != record.region || access.lanes + next_->lanes() > rules.gpu.simd_width) break;
             access.lanes += next_->lanes();
+            ++accesses_;
         }
+        // What stands between them is left out.
+        while (step_ != step_end_ && step_->access < accesses_) ++step_;
         access.mask = access.lanes == traces::warp_lanes ? ~0u : (1u << access.lanes) - 1;
     }
     access.elements = elements_;

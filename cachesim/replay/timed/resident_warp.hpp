@@ -19,12 +19,24 @@ public:
     Cycle since() const { return since_; }
     void end() { trace_.reset(); }
 
-    /// Instructions before the next access, for the rays that begin there.
+    /// The trace says what the warp waits for and issues beside its accesses (traces::WarpTrace::issue).
+    bool has_steps() const { return step_end_ != nullptr; }
+    /// The step that stands before the next access, which stays until it is taken; nullptr: none.
+    const traces::IssueStep* step() const {
+        return step_ != step_end_ && left_ == 0 && step_->access <= accesses_ ? step_ : nullptr;
+    }
+    void take_step() { ++step_; }
+    /// Nothing is left to read, once rays that begin have been passed (shading()).
+    bool at_end() const { return next_ == end_; }
+    /// Records of accesses that the warp has begun.
+    std::uint32_t accesses() const { return accesses_; }
+
+    /// Instructions before the next access, for the rays that begin there. None where the trace has steps.
     std::uint32_t shading(const TimedRules& rules) {
         std::uint32_t starts = 0;
         for (; next_ != end_ && !next_->is_access(); ++next_) ++starts;
         if (starts > 0) among_triangles_ = false;
-        return starts * rules.timing.shading_instructions;
+        return has_steps() ? 0 : starts * rules.timing.shading_instructions;
     }
 
     /// The next access is about to be taken: its record and its elements come nearer.
@@ -53,6 +65,8 @@ private:
     const std::uint32_t* elements_ = nullptr;  ///< of `next_`, from the first lane left on
     std::uint32_t left_ = 0;                   ///< lanes of `next_` that have not had their turn; 0: none has
     bool among_triangles_ = false;             ///< the last step was to triangles (LeafStarts)
+    const traces::IssueStep *step_ = nullptr, *step_end_ = nullptr;  ///< the next; of a trace without: nullptr
+    std::uint32_t accesses_ = 0;
     Cycle since_ = 0;
 };
 

@@ -3,7 +3,7 @@
 // A store needs no answer, so no warp waits for it. Every distinct sector that a warp access writes is taken to go to
 // DRAM once, which is more than the functional replay finds (there a sector changed twice in L2 is written once). The
 // time of these bytes at the bandwidth of DRAM is added to the launch, as if nothing overlapped it: true of a sort,
-// pessimistic for writes.
+// pessimistic for writes. Where the trace says what else a warp issues, the store is one instruction of it.
 #pragma once
 
 #include <algorithm>
@@ -31,6 +31,7 @@ public:
         rest->launch = warp->launch;
         rest->warp = warp->warp;
         const std::uint32_t* element = warp->elements.data();
+        std::vector<bool> kept;
         for (const traces::Record& record : warp->records) {
             const unsigned lanes = record.is_access() ? record.lanes() : 0;
             if (lanes != 0 && streams(regions_[record.region])) {
@@ -39,8 +40,10 @@ public:
                 rest->records.push_back(record);
                 rest->elements.insert(rest->elements.end(), element, element + lanes);
             }
+            if (lanes != 0) kept.push_back(!streams(regions_[record.region]));
             element += lanes;
         }
+        if (!warp->issue.empty()) rest->issue = steps_of(*warp, kept);
         return rest;
     }
 
@@ -53,6 +56,28 @@ public:
 
 private:
     static bool streams(const traces::Region& r) { return traces::role_of(r.kind).access != traces::AccessType::read; }
+
+    /// Where some accesses are left out: each of them is an instruction that nothing waits for.
+    static std::vector<traces::IssueStep> steps_of(const traces::WarpTrace& warp, const std::vector<bool>& kept) {
+        std::vector<std::uint32_t> before(1, 0);  // kept accesses before each
+        for (const bool keeps : kept) before.push_back(before.back() + keeps);
+        std::vector<traces::IssueStep> steps;
+        const auto add = [&](const traces::IssueStep& step) {
+            if (step.needs == 0 && !steps.empty() && steps.back().access == step.access)
+                steps.back().instructions += step.instructions;
+            else
+                steps.push_back(step);
+        };
+        auto next = warp.issue.begin();
+        for (std::uint32_t access = 0; access < before.size(); ++access) {
+            for (; next != warp.issue.end() && next->access == access; ++next) {
+                const bool needs = next->needs != 0 && kept[next->needs - 1];
+                add({before[access], needs ? before[next->needs - 1] + 1 : 0, next->instructions});
+            }
+            if (access < kept.size() && !kept[access]) add({before[access], 0, 1});
+        }
+        return steps;
+    }
 
     std::uint64_t sectors_of(const traces::Region& region, const std::uint32_t* elements, unsigned lanes) {
         if (traces::is_stream(region.kind))

@@ -66,6 +66,7 @@ TimedRules::TimedRules(const Gpu& g, const std::vector<traces::Region>& regions,
             tests.push_back(tests_of(regions[i]));
             triangle.push_back(traces::role_of(regions[i].kind).charge == traces::Charge::triangle);
         }
+        if (rt) sm_shapes.emplace_back(regions[i], i, g.front_end, g.l1(), ids);
         shapes.emplace_back(regions[i], i, rt && tests[i] > 0 ? front_end_of(*g.rt_unit) : g.front_end, g.l1(), ids);
         instructions.push_back(visit_instructions(timing, regions[i].kind, regions[i].degree));
     }

@@ -42,6 +42,10 @@ struct TimedRules {
     /// Whether instructions go one by one through collectors. Where nothing is ever taken there is nothing to wait for.
     bool collectors() const { return timing.operand_collectors > 0 && !ideal.infinite_bandwidth; }
     bool rt_unit() const { return !tests.empty(); }
+    /// How an SM loads the objects of a region, even if an RT unit would.
+    const LoadShape& sm_shape(std::uint32_t region) const {
+        return sm_shapes.empty() ? shapes[region] : sm_shapes[region];
+    }
     /// Of one visit.
     std::uint32_t most_loads() const {
         std::uint32_t most = 1;
@@ -56,6 +60,7 @@ struct TimedRules {
     PortPath path;
     std::vector<LineMap> maps;                ///< of each level
     std::vector<LoadShape> shapes;            ///< of each region
+    std::vector<LoadShape> sm_shapes;         ///< where an RT unit visits, those of an SM that does; else none
     std::vector<std::uint32_t> instructions;  ///< of a visit to each region, without its loads
     /// Of the RT unit for each lane of a visit to each region; 0: the SM visits. Empty where software traverses.
     std::vector<std::uint32_t> tests;

@@ -41,10 +41,16 @@ void TimedSm::place(unsigned cta_slot, std::span<const WarpPointer> warps, Cycle
         Warp& warp = warps_[slot];
         warp.records.begin(warps[i], from);
         warp.flights = per_warp_;
+        if (warp.records.has_steps()) {
+            warp.flights = 1;
+            prepare_steps();
+            pending_[slot].clear();
+        }
         ++counts_.warps;
         ++resident_;
         ++unfinished_[cta_slot];
-        for (std::uint32_t f = slot * per_warp_; f < (slot + 1) * per_warp_; ++f) {
+        for (std::uint32_t f = slot * per_warp_; f < slot * per_warp_ + warp.flights; ++f) {
+            flights_[f].in_rt_unit = false;
             flights_[f].computing = true;  // as if it came from the instructions of a visit
             schedulers_[flights_[f].scheduler].become_resident(flights_[f].bit, placed_);
             if (flow_) flow_->visits[f] = {};
@@ -83,18 +89,18 @@ TimedStatistics TimedSm::statistics(Cycle now) const {
 }
 
 /// The flight takes the warp's next access; false if there is none.
-bool TimedSm::begin_visit(std::uint32_t number) {
+bool TimedSm::begin_visit(std::uint32_t number, VisitAtPort& visit) {
+    const bool steps = has_steps(number);
     const auto access = warps_[slot_of(number)].records.next(rules_);
     if (!access) return false;
     Flight& flight = flights_[number];
-    VisitAtPort& visit = flight.visit;
     visit.region = access->region;
-    visit.shape = &rules_.shapes[access->region];
+    visit.shape = steps ? &rules_.sm_shape(access->region) : &rules_.shapes[access->region];
     visit.visit.begin(*visit.shape, access->mask, access->elements, rules_.gpu.simd_width);
     visit.passed = visit.there = 0;
     flight.loads = visit.shape->loads;
     flight.instructions = rules_.instructions[access->region] + access->leaf_instructions;
-    if (rt_unit_) flight.tests = access->lanes * rules_.tests[access->region];
+    if (rt_unit_) flight.tests = steps ? 0 : access->lanes * rules_.tests[access->region];
     flight.issued = 0;
     flight.first_issue = never;
     ++counts_.warp_accesses;
@@ -104,12 +110,16 @@ bool TimedSm::begin_visit(std::uint32_t number) {
 
 /// The flight's instructions are done.
 void TimedSm::make_ready(std::uint32_t number, Cycle time) {
+    if (has_steps(number)) {
+        follow_steps(number, time);
+        return;
+    }
     if (const std::uint32_t count = shading(number)) {
         leave_rt_unit(number, time);
         events_.push(run_instructions(number, time, count, 0), number);
         return;
     }
-    if (!begin_visit(number)) {
+    if (!begin_visit(number, flights_[number].visit)) {
         leave_rt_unit(number, time);
         end_flight(number, time);
         return;
@@ -181,6 +191,13 @@ void TimedSm::issue(unsigned number, Cycle time) {
     scheduler.issue_load(bit, flight.issued == flight.loads, time);
     note(number);
     ++counts_.loads;
+    if (has_steps(chosen)) {
+        PendingAccesses& pending = pending_[slot_of(chosen)];
+        pending[pending.latest()].first_issue = flight.first_issue;
+        port_of(chosen).push(load_of_place(chosen, pending.latest(), load));
+        if (flight.issued == flight.loads) events_.push(time + 1, chosen);
+        return;
+    }
     port_of(chosen).push({&flight.visit, chosen, load, chosen});
 }
 
@@ -195,6 +212,10 @@ void TimedSm::serve(Port& port, Cycle now, Cycle end) {
         schedulers_[flight.scheduler].load_passed();
         note(flight.scheduler);
     }
+    if (has_steps(load->flight)) {
+        step_load_passed(*load);
+        return;
+    }
     LoadData& data = data_[load->data];
     data.asked = ++flight.visit.passed == flight.loads || flow_;
     if (data.known()) data_known(load->data);
@@ -203,6 +224,10 @@ void TimedSm::serve(Port& port, Cycle now, Cycle end) {
 /// All sectors have been looked up, and when the last arrives is known.
 void TimedSm::data_known(std::uint32_t number) {
     const LoadData& data = data_[number];
+    if (has_steps(data.flight)) {
+        step_data_known(number);
+        return;
+    }
     if (!flow_) {
         flights_[number].computing = false;
         events_.push(data.arrival + rules_.timing.l1_latency, number);

@@ -5,10 +5,12 @@
 // port of their L1. When the last sector of the visit is there, l1_latency later the warp issues the instructions of
 // that visit, and is ready again. With Timing::operand_collectors each instruction goes its own way
 // (instruction_flow.hpp). With Traversal::rt_unit visits to nodes and triangles belong to the RT unit (rt_unit.hpp),
-// which shares the ports with the schedulers.
+// which shares the ports with the schedulers. A warp whose trace says what waits for what issues in that order instead,
+// by one flight (timed_sm_steps.cpp).
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "cachesim/replay/timed/event_wheel.hpp"
 #include "cachesim/replay/timed/instruction_flow.hpp"
 #include "cachesim/replay/timed/memory_side.hpp"
+#include "cachesim/replay/timed/pending_accesses.hpp"
 #include "cachesim/replay/timed/port.hpp"
 #include "cachesim/replay/timed/private_level.hpp"
 #include "cachesim/replay/timed/resident_warp.hpp"
@@ -96,7 +99,7 @@ private:
     }
 
     std::uint32_t shading(std::uint32_t flight) { return warps_[slot_of(flight)].records.shading(rules_); }
-    bool begin_visit(std::uint32_t flight);
+    bool begin_visit(std::uint32_t flight, VisitAtPort&);
     void make_ready(std::uint32_t flight, Cycle);
     void end_flight(std::uint32_t flight, Cycle);
     void begin_in_rt_unit(std::uint32_t flight, Cycle);
@@ -112,6 +115,19 @@ private:
     void deliver(const MemorySide::Reply&);
     void tell_ports();
     void data_known(std::uint32_t number);
+
+    // traces::WarpTrace::issue
+    bool has_steps(std::uint32_t flight) const {
+        return !pending_.empty() && warps_[slot_of(flight)].records.has_steps();
+    }
+    void prepare_steps();
+    void follow_steps(std::uint32_t flight, Cycle);
+    Cycle obstacle(std::uint32_t slot) const;
+    void open_place(std::uint32_t flight);
+    void wait_until(std::uint32_t flight, Cycle);
+    Port::Load load_of_place(std::uint32_t flight, std::uint32_t place, std::uint32_t load);
+    void step_load_passed(const Port::Load&);
+    void step_data_known(std::uint32_t number);
 
     // Timing::operand_collectors
     void run_flow(Cycle end);
@@ -141,7 +157,11 @@ private:
     EventWheel events_;                           ///< flights whose data are there, and flights that begin a visit
     std::optional<InstructionFlow> flow_;         ///< with operand collectors
     std::optional<RtUnit> rt_unit_;               ///< its warps are flights
-    TimedStatistics counts_;                      ///< but for those of ports and private_
+    std::vector<PendingAccesses> pending_;        ///< by slot, once a warp with steps has come
+    std::size_t first_place_ = 0;                 ///< in data_, of those of pending_
+    std::deque<VisitAtPort> visits_;              ///< of warps with steps, from issue to the end of the port
+    std::vector<VisitAtPort*> free_visits_;
+    TimedStatistics counts_;  ///< but for those of ports and private_
     Cycle now_ = 0;
     Cycle last_end_ = 0;
     std::uint64_t placed_ = 0;

@@ -13,7 +13,6 @@ namespace raycache::cachesim {
 namespace {
 
 constexpr Cycle issue_to_unit = 3;  ///< register, collector, register
-constexpr Cycle issue_to_port = 4;  ///< and the load unit's own register: part of l1_latency
 
 unsigned first(std::uint64_t bits) { return static_cast<unsigned>(std::countr_zero(bits)); }
 
@@ -40,6 +39,10 @@ Cycle TimedSm::ready_time(std::uint32_t number) const {
 /// After an issue at that cycle: the flight waits for what its next instruction needs.
 void TimedSm::advance(std::uint32_t number, Cycle time) {
     InstructionFlow::Visit& visit = flow_->visits[number];
+    if (visit.over() && has_steps(number)) {
+        follow_steps(number, time + 1);
+        return;
+    }
     if (visit.over() && visit.instructions >= visit.loads) {
         open_visit(number, time);
         return;
@@ -57,7 +60,10 @@ void TimedSm::advance(std::uint32_t number, Cycle time) {
 void TimedSm::wake(std::uint32_t number, Cycle time) {
     const InstructionFlow::Visit& visit = flow_->visits[number];
     if (visit.over()) {
-        open_visit(number, time);
+        if (has_steps(number))
+            follow_steps(number, time);
+        else
+            open_visit(number, time);
         return;
     }
     const Flight& flight = flights_[number];
@@ -69,7 +75,7 @@ void TimedSm::open_visit(std::uint32_t number, Cycle time) {
     visit = {};
     visit.instructions = shading(number);
     if (visit.instructions == 0) {
-        if (!begin_visit(number)) {
+        if (!begin_visit(number, flights_[number].visit)) {
             end_flight(number, time);
             return;
         }
@@ -100,7 +106,13 @@ bool TimedSm::issue_one(unsigned number, Cycle time) {
     if (load) {
         ++counts_.loads;
         flight.first_issue = std::min(flight.first_issue, time);
-        flow.collectors.issue(number, chosen, visit.next, OperandCollectors::load);
+        std::uint32_t place = 0;
+        if (has_steps(chosen)) {
+            PendingAccesses& pending = pending_[slot_of(chosen)];
+            place = pending.latest();
+            pending[place].first_issue = flight.first_issue;
+        }
+        flow.collectors.issue(number, chosen, visit.next, OperandCollectors::load, place);
     } else {
         const std::uint32_t chains = rules_.timing.dependent_chains, instruction = visit.next - visit.loads;
         ++counts_.instructions;
@@ -155,7 +167,10 @@ bool TimedSm::feed_ports(Cycle now, Cycle end) {
         }
         if (!oldest) continue;
         const OperandCollectors::Instruction at = collectors.take(from, OperandCollectors::load);
-        port.push({&flights_[at.flight].visit, at.flight, at.number, at.flight * data_per_flight_ + at.number});
+        if (has_steps(at.flight))
+            port.push(load_of_place(at.flight, at.place, at.number));
+        else
+            port.push({&flights_[at.flight].visit, at.flight, at.number, at.flight * data_per_flight_ + at.number});
         port.hold(now + 1);
         moved = true;
     }
