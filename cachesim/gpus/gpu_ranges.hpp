@@ -17,9 +17,9 @@ using ChosenValue = std::pair<std::string, std::string>;
 std::vector<GpuValue> open_values(const std::string& name_or_path, const std::vector<std::string>& changes = {});
 
 /// load_gpu() with `changes`, and with these in place of the file's values. Other sets or slices of a cache keep its
-/// capacity: its ways become fewer or more by as much, unless `changes` gives them. The GPU's name and its changes are
-/// those of `changes` alone. Throws UsageError where that gives no whole number of ways, else as load_gpu() does, also
-/// for values that are right one by one and not together.
+/// capacity to the nearest way: its ways become fewer or more, unless `changes` gives them. The GPU's name and its
+/// changes are those of `changes` alone. Throws as load_gpu() does, also for values that are right one by one and not
+/// together.
 Gpu load_with(const std::string& name_or_path, const std::vector<std::string>& changes,
               const std::vector<ChosenValue>& chosen);
 

@@ -72,9 +72,8 @@ public:
             std::vector<std::string> tables;
             for (const auto& [name, node] : root_)
                 if (node.is_table() && !node.as_table()->contains("value")) tables.emplace_back(name.str());
-            throw UsageError(fmt::format("{} with --set: expected a key of one of its tables {}, found \"{}\"{}", file_,
-                                         fmt::join(tables, ", "), printable_line(assignment),
-                                         own ? std::string() : did_you_mean(key, tables)));
+            throw UsageError(fmt::format("{} with --set: expected a key of one of its tables {}, found \"{}\"", file_,
+                                         fmt::join(tables, ", "), printable_line(assignment)));
         }
         const std::string inner_key(inner->begin()->first.str());
         own->insert_or_assign(inner_key, inner->begin()->second);

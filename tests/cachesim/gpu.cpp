@@ -207,8 +207,8 @@ TEST_CASE("errors of a GPU file name file, line and key") {
     using Catch::StartsWith;
     CHECK_THAT(error("sms = 2\n", "sms = 0\n"), StartsWith("f.toml:3: sms: expected a positive"));
     CHECK_THAT(error("sms = 2\n", "sms = -2\n"), StartsWith("f.toml:3: sms: expected a positive"));
-    CHECK_THAT(error("sms = 2\n", "sms = 2.5\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found floating"));
-    CHECK_THAT(error("sms = 2\n", "sms = \"2\"\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found string"));
+    CHECK_THAT(error("sms = 2\n", "sms = 2.5\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found 2.5"));
+    CHECK_THAT(error("sms = 2\n", "sms = \"2\"\n"), StartsWith("f.toml:3: sms: ") && Catch::Contains("found \"2\""));
     CHECK_THAT(error("sms = 2\n", "sms = nan\n"), StartsWith("f.toml:3: sms: "));
     CHECK_THAT(error("sms = 2\n", "sms = 4294967298\n"), StartsWith("f.toml:3: sms: "));
     CHECK_THAT(error("sms = 2\n", "sms = 5000\n"), StartsWith("f.toml:3: sms: expected 1 to 4096"));

@@ -150,6 +150,40 @@ TEST_CASE("ranges that make no sense are refused with file, line and key") {
                StartsWith("f.toml:7: scheduler.choices: expected \"loose_round_robin\" or \"greedy_then_oldest\""));
 }
 
+TEST_CASE("every preset loads with whatever it says of its caches, all at once") {
+    const auto some_of = [](const std::vector<GpuValue>& open, const std::string& key) {
+        std::vector<std::string> values;
+        for (const GpuValue& v : open) {
+            if (v.key != key) continue;
+            values = v.range->values;
+            if (v.range->listed) continue;
+            const std::uint64_t low = std::stoull(values[0]), high = std::stoull(values[1]);
+            for (const std::uint64_t between : {low + 1, (low + high) / 2, high - 1})
+                if (between > low && between < high) values.push_back(fmt::format("{}", between));
+        }
+        if (values.empty()) values.emplace_back();  // as the file has it
+        return values;
+    };
+    std::size_t tried = 0;
+    for (const GpuPreset& preset : gpu_presets()) {
+        const auto open = open_values(preset.name);
+        for (const std::string level : {"l1", "l2", "l3"})
+            for (const auto& sets : some_of(open, level + ".sets"))
+                for (const auto& slices : some_of(open, level + ".slices"))
+                    for (const auto& ways : some_of(open, level + ".ways")) {
+                        std::vector<ChosenValue> chosen;
+                        if (!sets.empty()) chosen.emplace_back(level + ".sets", sets);
+                        if (!slices.empty()) chosen.emplace_back(level + ".slices", slices);
+                        if (!ways.empty()) chosen.emplace_back(level + ".ways", ways);
+                        INFO(preset.name << ", " << level << ": " << sets << " sets, " << slices << " slices, "
+                                         << ways);
+                        CHECK_NOTHROW(load_with(preset.name, {}, chosen));
+                        ++tried;
+                    }
+    }
+    CHECK(tried > 100);
+}
+
 TEST_CASE("other sets of a cache keep its capacity, and a value that the user sets stays as it is") {
     const Gpu own = load_gpu("gtx-980-ti");
     const Gpu gpu = load_with("gtx-980-ti", {}, {{"l2.sets", "128"}, {"l2.slices", "12"}, {"timing.l1_latency", "90"}});
@@ -162,6 +196,9 @@ TEST_CASE("other sets of a cache keep its capacity, and a value that the user se
     CHECK(load_with("gtx-980-ti", {"l2.ways=8"}, {{"l2.sets", "128"}}).levels[1].ways == 8);
     const auto open = open_values("gtx-980-ti", {"l2.sets=128"});
     CHECK(std::none_of(open.begin(), open.end(), [](const GpuValue& v) { return v.key == "l2.sets"; }));
-    CHECK_THROWS_WITH(load_with("gtx-980-ti", {}, {{"l2.sets", "7"}}), Catch::Contains("in whole ways"));
+    const CacheGeometry seven = load_with("gtx-980-ti", {}, {{"l2.sets", "7"}}).levels[1];
+    const std::uint64_t way = std::uint64_t{seven.slices} * 7 * seven.line_bytes;
+    CHECK(seven.bytes() + way / 2 >= own.levels[1].bytes());  // to the nearest way
+    CHECK(seven.bytes() <= own.levels[1].bytes() + way / 2);
     CHECK_THROWS_AS(load_with("gtx-980-ti", {}, {{"timing.l2_latency", "500"}}), UsageError);
 }

@@ -26,6 +26,22 @@ class BadCommandLines(ProgramTest):
         self.refuses(2, "list", "--colour")
         self.refuses_option(CAPTURE, "--bounce", "1")
 
+    def test_what_nobody_knows_is_said_before_what_is_missing(self):
+        self.refuses(2, "bogus", "--help", mentions=["bogus"])
+        self.refuses(2, "--hlep", mentions=["--help"])
+        self.refuses(2, "help", mentions=["--help"])
+        self.refuses(2, "replay", "--set", "l1.wayz=3", mentions=["l1.wayz", "did you mean 'l1.ways'"])
+        self.refuses(2, "replay", "no.rct", "--set", "foo=1", mentions=["foo"])
+        for option, word in (("--strategy", "bogus"), ("--layout", "bogus"), ("--spp", "nan"), ("--sky", "dark")):
+            self.refuses(2, "render", "no.glb", option, word, "-o", "p.png", mentions=[option, word])
+        self.refuses(2, "capture", "no.glb", "--order", "bogus", "-o", "t.rct", mentions=["--order"])
+
+    def test_a_misspelt_value_of_a_gpu_key_gets_a_suggestion(self):
+        self.capture("t.rct")
+        for change, meant in (("l1.policy=lur", "lru"), ("l1.index=xorfold", "xor_fold")):
+            self.refuses(2, "replay", "t.rct", *GPU, "--set", change, mentions=[f"did you mean '{meant}'"])
+        self.refuses(2, "replay", "t.rct", *GPU, "--set", "l1.ways=many", mentions=['"many"'])
+
     def test_a_missing_argument_is_named(self):
         self.refuses(2, "render", "courtyard", mentions=["--output"])
         self.refuses(2, "capture", "-o", "trace.rct", mentions=["SCENE"])

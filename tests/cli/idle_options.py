@@ -90,6 +90,24 @@ class IdleOptions(ProgramTest):
         self.assertEqual(self.warned("samples", "--strategy", "cranley-patterson", "--k", "1"), {"--k"})
         self.assertEqual(self.warned("samples", "--k", "1"), set())
 
+    def test_an_option_beside_param_of_its_name_is_warned_of_and_param_twice_is_refused(self):
+        self.assertEqual(self.capture("--mu", "0.3", "--param", "mu=0.2"), {"--mu"})
+        self.assertEqual(self.capture("--param", "mu=0.2"), set())
+        self.refuses(2, "capture", *SMALL, "--param", "mu=0.2", "--param", "mu=0.3", "-o", "t.rct", mentions=["twice"])
+
+    def test_wide_without_a_table_and_exposure_of_a_linear_picture_are_warned_of(self):
+        self.assertEqual(self.warned("list", "gpus", "--json", "--wide"), {"--wide"})
+        self.succeeds("list", "gpus", "--wide")
+        picture = ["render", *SMALL, "--spp", "1", "--exposure", "1", "-o"]
+        self.assertEqual(self.warned(*picture, "p.exr"), {"--exposure"})
+        self.assertEqual(self.warned(*picture, "p.png"), set())
+
+    def test_options_of_another_export_are_refused(self):
+        self.succeeds("capture", *SMALL, "--spp", "4", "--trace-samples", "1", "-o", "t.rct")
+        for option in ("--warps-per-cta", "--binary-version"):
+            self.refuses(2, "export", "t.rct", *GPU, "--sm", "0", "--format", "csv", option, "8" if "cta" in option else "75",
+                         "-o", "t.csv", mentions=[option, "accel-sim"])
+
     def test_mu_cycles_is_refused_with_the_options_that_took_its_place(self):
         for command in (["capture", *SMALL, "-o", "t.rct"], ["samples"]):
             self.refuses(2, *command, "--mu", "cycles", mentions=["--cycles-multiplier", "scrambling-distance"])

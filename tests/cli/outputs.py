@@ -19,6 +19,24 @@ GLTF = ('{"asset":{"version":"2.0"},"buffers":[{"uri":"positions.rct","byteLengt
         '"scenes":[{"nodes":[0]}],"scene":0}')
 
 
+class SameOutput(ProgramTest):
+    def test_two_outputs_of_a_command_in_one_file_are_refused_under_whatever_names(self):
+        self.path("real.png").write_bytes(b"before")
+        os.link(self.path("real.png"), self.path("hard.png"))
+        os.symlink(self.path("real.png"), self.path("soft.png"))
+        for other in ("real.png", "./real.png", "hard.png", "soft.png"):
+            self.refuses(2, "samples", "--spp", "4", "--copies", "4", "--picture", "real.png", "--csv", other,
+                         mentions=["two outputs"])
+        self.assertEqual(self.path("real.png").read_bytes(), b"before")
+        self.succeeds("samples", "--spp", "4", "--copies", "4", "--csv", "/dev/null")
+
+    def test_a_reference_is_not_the_picture_of_a_strategy(self):
+        self.path("pictures").mkdir()
+        self.refuses(2, "quality", *SCENE, "--resolution", "8x8", "--spp", "2", "--bounces", "1", "--strategy", "coherent,random",
+                     "--reference-spp", "4", "--reference", "pictures/coherent.exr", "-o", "pictures",
+                     mentions=["coherent.exr"], warnings=True)
+
+
 class Overwriting(ProgramTest):
     def keeps(self, name, *command, warnings=False):
         """The command is refused as wrong use, naming the file, and the file is as before."""

@@ -79,7 +79,7 @@ class RtUnits(ProgramTest):
                                    ("rtx-3070", "rt_unit.warps=0", "rt_unit.warps"),
                                    ("rtx-3070", "rt_unit.load_bytes=48", "expected a power of two, found 48"),
                                    ("rtx-3070", "rt_unit.box_tests_per_cycle=0", "rt_unit.box_tests_per_cycle"),
-                                   ("v100", "rt_unit.warps=4", "expected a key of a table of the file")):
+                                   ("v100", "rt_unit.warps=4", "expected a key of one of its tables front_end, l1, l2, ")):
             self.refuses(2, "replay", trace, "--gpu", gpu, "--timed", "--set", change, mentions=[words])
 
 

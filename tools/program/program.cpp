@@ -128,7 +128,7 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Command>>& c
 /// Of a word where a command is expected.
 UsageError unknown_word(const std::string& word, const std::vector<std::string>& commands) {
     if (word.starts_with('-')) {
-        const std::string meant = did_you_mean(word, {"--help", "-h", "--version"});
+        const std::string meant = did_you_mean(word, {"--help", "--version"});
         return UsageError(fmt::format("unknown option '{}'; expected a command, --help or --version{}", word, meant));
     }
     std::string meant = did_you_mean(word, commands);
