@@ -196,7 +196,7 @@ void TracegReader::instruction(std::string_view line, const TextPlace& place) {
     between_.reset();
     if (!drop_null_lanes()) return other_instruction(found);
     ++kernel_.loads;
-    kernel_.bypassing += found.opcode.find(".STRONG.") != std::string_view::npos ||
+    kernel_.bypassing += found.opcode.find(".STRONG") != std::string_view::npos ||
                          found.opcode.find(".BYPASS") != std::string_view::npos;
     hand_on();
     if (found.opcode.starts_with("LDGSTS"))
