@@ -103,7 +103,7 @@ class IdleOptions(ProgramTest):
         self.assertEqual(self.warned(*picture, "p.png"), set())
 
     def test_options_of_another_export_are_refused(self):
-        self.succeeds("capture", *SMALL, "--spp", "4", "--trace-samples", "1", "-o", "t.rct")
+        self.succeeds("capture", *SMALL, "--spp", "64", "--trace-samples", "1", "-o", "t.rct")
         for option in ("--warps-per-cta", "--binary-version"):
             self.refuses(2, "export", "t.rct", *GPU, "--sm", "0", "--format", "csv", option, "8" if "cta" in option else "75",
                          "-o", "t.csv", mentions=[option, "accel-sim"])

@@ -28,7 +28,7 @@ class SameOutput(ProgramTest):
             self.refuses(2, "samples", "--spp", "4", "--copies", "4", "--picture", "real.png", "--csv", other,
                          mentions=["two outputs"])
         self.assertEqual(self.path("real.png").read_bytes(), b"before")
-        self.succeeds("samples", "--spp", "4", "--copies", "4", "--csv", "/dev/null")
+        self.succeeds("samples", "--spp", "64", "--copies", "4", "--csv", "/dev/null")
 
     def test_a_reference_is_not_the_picture_of_a_strategy(self):
         self.path("pictures").mkdir()
