@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::uint64_t texel_base = 0x30'0000'0000;
 constexpr std::uint32_t texel_bytes = 4;
+/// Of the regions of an integrator, one behind the other.
+constexpr std::uint64_t own_base = 0x38'0000'0000, region_alignment = 2U << 20U;
 /// Warps of a file block: 8 CTAs.
 constexpr std::uint32_t block_warps = 64;
 
@@ -42,7 +44,8 @@ std::vector<std::uint32_t> choose_launches(const CaptureSettings& settings, std:
     return first;
 }
 
-std::vector<traces::Region> make_regions(const PreparedScene& scene) {
+/// Those of BVH and textures.
+std::vector<traces::Region> scene_regions(const PreparedScene& scene) {
     std::vector<traces::Region> regions = scene.bvh().regions();
     if (scene.texels().count() != 0) {
         traces::Region texels;
@@ -53,6 +56,15 @@ std::vector<traces::Region> make_regions(const PreparedScene& scene) {
         regions.push_back(std::move(texels));
     }
     return regions;
+}
+
+void add_own_regions(std::vector<traces::Region>& regions, const IntegratorData& data) {
+    std::uint64_t base = own_base;
+    for (traces::Region& region : data.regions()) {
+        region.base = base;
+        base += (std::uint64_t{region.count} * region.stride + region_alignment) / region_alignment * region_alignment;
+        regions.push_back(std::move(region));
+    }
 }
 
 traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSettings& settings, const LaunchGrid& grid,
@@ -72,7 +84,7 @@ traces::Provenance make_provenance(const PreparedScene& scene, const CaptureSett
     p.seed = settings.strategy.samples.seed;
     p.width = settings.width;
     p.height = settings.height;
-    p.bounces = settings.paths.bounces;
+    p.bounces = integrator_entry(settings.paths.integrator).follows_light ? settings.paths.bounces : 0;
     p.execution = to_string(settings.execution.execution);
     p.order = settings.execution.order;
     return p;
@@ -85,10 +97,13 @@ Capture::Capture(const PreparedScene& scene, const CaptureSettings& settings)
       settings_(checked(settings)),
       strategy_(settings_.strategy, sample_dimensions(settings_.paths)),
       camera_(scene.camera(), settings.width, settings.height),
+      data_(scene.integrator_data(camera_, settings_.paths)),
       grid_(settings.thread_map, settings.width, settings.height, settings.strategy.samples.spp,
             interleave_of(settings.strategy.parameters)) {
     header_.provenance = make_provenance(scene, settings_, grid_, strategy_);
-    header_.regions = make_regions(scene);
+    if (integrator_entry(settings_.paths.integrator).walks_bvh) header_.regions = scene_regions(scene);
+    own_regions_ = static_cast<std::uint8_t>(header_.regions.size());
+    if (data_) add_own_regions(header_.regions, *data_);
     header_.launches = choose_launches(settings_, grid_.samples_per_launch());
     header_.warps_per_launch = grid_.warps();
     if (is_wavefront()) plan_wavefront();
@@ -126,7 +141,7 @@ void Capture::plan_wavefront() {
 }
 
 std::unique_ptr<Capture::Worker> Capture::make_worker() const {
-    return std::make_unique<Worker>(scene_, camera_, strategy_, settings_.paths);
+    return std::make_unique<Worker>(scene_, camera_, strategy_, settings_.paths, data_.get(), own_regions_);
 }
 
 std::unique_ptr<Wavefront> Capture::begin_wavefront(std::uint32_t launch) const {
@@ -162,7 +177,8 @@ void Capture::trace_warp(Worker& worker, std::uint32_t launch, std::uint32_t war
 
 void Capture::last_symbols(const Worker& worker, traces::WarpSymbols& out) const {
     out.clear();
-    if (scene_.bvh().symbols_known()) worker.recorder.store_symbols(out);
+    const bool walks = integrator_entry(settings_.paths.integrator).walks_bvh;
+    if (!walks || scene_.bvh().symbols_known()) worker.recorder.store_symbols(out);
 }
 
 namespace {

@@ -72,6 +72,8 @@ public:
     const PreparedScene& scene() const { return scene_; }
     const SamplingStrategy& strategy() const { return strategy_; }
     const CameraRays& camera() const { return camera_; }
+    /// Of the integrator; may be null.
+    const IntegratorData* integrator_data() const { return data_.get(); }
 
 private:
     void plan_wavefront();
@@ -80,10 +82,12 @@ private:
     CaptureSettings settings_;
     SamplingStrategy strategy_;
     CameraRays camera_;
+    std::shared_ptr<const IntegratorData> data_;
     LaunchGrid grid_;
     std::unique_ptr<RayOrder> order_;  ///< of a wavefront that sorts
     std::vector<WavefrontKernel> kernels_;
     WavefrontBuffers buffers_;
+    std::uint8_t own_regions_ = 0;  ///< index of the first region of the integrator's own
     traces::Header header_;
     /// Base points of each launch: samples_per_launch of them.
     std::vector<std::vector<std::vector<std::uint32_t>>> base_points_;

@@ -13,6 +13,7 @@
 #include "tracer/bvh/bvh.hpp"
 #include "tracer/bvh/embree_scene.hpp"
 #include "tracer/bvh/layouts/layout.hpp"
+#include "tracer/paths/integrators/integrator.hpp"
 #include "tracer/paths/lights.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/scene/texel_layout.hpp"
@@ -61,6 +62,9 @@ public:
         });
         return *shared_->embree;
     }
+    /// What the integrator of these settings prepares for pictures by this camera; null where it prepares nothing. Made
+    /// once and kept, as captures of one scene are many. May be called by several threads.
+    std::shared_ptr<const IntegratorData> integrator_data(const CameraRays&, const PathSettings&) const;
     const std::string& layout() const { return layout_.name; }
     const Lights& lights() const { return shared_->lights; }
     const TexelLayout& texels() const { return shared_->texels; }
@@ -87,6 +91,8 @@ private:
         TexelLayout texels;
         std::once_flag embree_once;
         std::optional<EmbreeScene> embree;
+        std::mutex data_mutex;
+        std::map<std::string, std::shared_ptr<const IntegratorData>> data;
     };
 
     PreparedScene(std::shared_ptr<Shared> shared, const std::string& layout)

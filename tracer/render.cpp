@@ -19,10 +19,11 @@ namespace {
 
 struct Worker {
     Worker(const PreparedScene& scene, const CameraRays& camera, const SamplingStrategy& strategy,
-           const PathSettings& paths)
+           const PathSettings& paths, const IntegratorData* data)
         : traversal(scene.embree()),
-          integrator(integrator_entry(paths.integrator)
-                         .make({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal})) {}
+          integrator(
+              integrator_entry(paths.integrator)
+                  .make({scene.scene(), camera, scene.lights(), scene.texels(), strategy, paths, traversal, data})) {}
     Worker(const Worker&) = delete;  // its parts point at each other
 
     EmbreeTraversal traversal;
@@ -52,12 +53,13 @@ Image render(const PreparedScene& scene, const RenderSettings& settings,
     const LaunchGrid grid(ThreadMap::tile, settings.width, settings.height, spp);
 
     scene.embree();  // built here, not by whichever worker comes first
+    const std::shared_ptr<const IntegratorData> data = scene.integrator_data(camera, settings.paths);
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
     MemoryBudget().check(pixels * sizeof(Vec3), fmt::format("{} x {} pixels", settings.width, settings.height),
                          "the picture");
     Image image{settings.width, settings.height, std::vector<Vec3>(std::size_t{settings.width} * settings.height)};
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers(
-        [&] { return std::make_unique<Worker>(scene, camera, strategy, settings.paths); });
+        [&] { return std::make_unique<Worker>(scene, camera, strategy, settings.paths, data.get()); });
 
     // All warps of one sample index before the next: base points are computed once and memory stays that of one.
     for (std::uint64_t sample = 0; sample < spp; ++sample) {

@@ -12,7 +12,7 @@ namespace raycache::traces::format {
 
 using namespace std::string_view_literals;
 
-inline constexpr std::uint32_t version = 4;  ///< the newest
+inline constexpr std::uint32_t version = 5;  ///< the newest
 
 inline constexpr std::string_view file_magic = "RCTRACE\x1a"sv;
 inline constexpr std::string_view block_magic = "RCBLOCK\x1a"sv;

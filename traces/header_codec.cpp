@@ -62,7 +62,7 @@ std::uint32_t version_of(const Header& header) {
         version = std::max(version, is_known(r.kind) ? role_of(r.kind).version : 2);
         if (!r.pages.empty()) version = std::max(version, 3u);
     }
-    return header.issue ? issue_version : version;
+    return header.issue ? std::max(version, issue_version) : version;
 }
 
 void check_links(const Header& header, unsigned self) {

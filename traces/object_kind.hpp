@@ -26,6 +26,9 @@ enum class ObjectKind : std::uint8_t {
     /// Bytes that sorting a queue moves: an access by n lanes stands for n * element_size bytes that stream from and to
     /// DRAM, whatever the elements.
     sort = 9,
+    // What a pass over a picture reads of the surfaces that it shows, by pixel.
+    depth = 10,   ///< how far away
+    normal = 11,  ///< where it faces
 };
 
 /// What an access does to memory.
@@ -63,6 +66,8 @@ inline constexpr std::array object_kind_roles = [] {
         ObjectKindRole{K::hit_write,       "hit write",       "hit writes",       A::write,  C::texel,    false, true,  2},
         ObjectKindRole{K::queue_write,     "queue write",     "queue writes",     A::write,  C::texel,    false, true,  2},
         ObjectKindRole{K::sort,            "sort",            "sorts",            A::stream, C::texel,    false, true,  2},
+        ObjectKindRole{K::depth,           "depth",           "depths",           A::read,   C::texel,    false, false, 5},
+        ObjectKindRole{K::normal,          "normal",          "normals",          A::read,   C::texel,    false, false, 5},
     };
     // clang-format on
 }();

@@ -42,7 +42,7 @@ class Trace:
         self.file = open(path, "rb").read()
         magic, version, reserved, size, regions, launches, self.warps_per_launch, text, kernels, issue = (
             struct.unpack_from("<8sIIQIIIIII", self.file))
-        require(magic == b"RCTRACE\x1a" and version in (1, 2, 3, 4), "no trace of version 1 to 4")
+        require(magic == b"RCTRACE\x1a" and version in (1, 2, 3, 4, 5), "no trace of version 1 to 5")
         require(reserved == 0 and issue <= (version >= 4) and (version >= 2 or kernels == 0), "reserved bits set")
         self.issue, self.steps = issue == 1, []
         self.kernels_per_launch = kernels if version >= 2 else 1
@@ -60,7 +60,7 @@ class Trace:
             region = dict(zip(names, struct.unpack_from("<BBBBIQIIQQ", self.file, entries + 40 * i)))
             stored = self.file[at:at + region["link_bytes"]]
             require(xxhash.xxh3_64_intdigest(stored) == region["link_checksum"], f"links of region {i}: wrong checksum")
-            require(region["kind"] < (3 if version == 1 else 10), "unknown kind of object")
+            require(region["kind"] < (3 if version == 1 else 10 if version < 5 else 12), "unknown kind of object")
             region["links"] = self.links(region, i, stored)
             self.regions.append(region)
             require(region["paged"] <= (version >= 3), "reserved bits set")

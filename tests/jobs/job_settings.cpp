@@ -142,5 +142,27 @@ TEST_CASE("The command of a trace names layout and integrator where they are not
                Contains(" --layout bvh2-breadth-first ") && !Contains("--integrator"));
 }
 
+TEST_CASE("The command of a trace has the options that its integrator reads, and of its parameters those not usual") {
+    tools::SceneSettings scene;
+    scene.source = "courtyard";
+    tools::SamplingSettings sampling;
+    sampling.lights = "nee";
+    sampling.integrator_parameters = {{"radius", "0.5"}, {"steps", "8"}, {"depth-bytes", ""}};
+    CHECK_THAT(capture_settings(scene, sampling, tools::CaseSettings{}).command,
+               Contains(" --bounces 3 --lights nee --thread-map") && !Contains("--radius"));
+    sampling.integrator = "ao";
+    CHECK_THAT(
+        capture_settings(scene, sampling, tools::CaseSettings{}).command,
+        Contains(" --integrator ao --radius 0.5 --thread-map") && !Contains("--bounces") && !Contains("--lights"));
+    sampling.integrator = "ssao";
+    sampling.integrator_parameters["depth-bytes"] = "2";
+    CHECK_THAT(capture_settings(scene, sampling, tools::CaseSettings{}).command,
+               Contains(" --integrator ssao --radius 0.5 --depth-bytes 2 --thread-map"));
+    sampling.integrator_parameters["steps"] = "0";
+    CHECK_THROWS_WITH(sampling.paths(), Contains("must be 1 to 1024, found 0"));
+    sampling.integrator_parameters = {{"setps", "8"}};
+    CHECK_THROWS_WITH(sampling.paths(), Contains("did you mean 'steps'?"));
+}
+
 }  // namespace
 }  // namespace raycache

@@ -57,6 +57,7 @@ TEST_CASE("integrators: stages of a path end at its last bounce, or one ray late
 TEST_CASE("integrators: a picture is that of the integrator which its settings name") {
     const PreparedScene scene(icosphere(2), {});
     for (const IntegratorEntry& entry : integrators()) {
+        INFO(entry.name);
         RenderSettings settings;
         settings.width = settings.height = 16;
         settings.paths.integrator = entry.name;
@@ -67,7 +68,8 @@ TEST_CASE("integrators: a picture is that of the integrator which its settings n
         const CameraRays camera(scene.camera(), 16, 16);
         EmbreeTraversal traversal(scene.embree());
         const auto integrator =
-            entry.make({scene.scene(), camera, scene.lights(), scene.texels(), strategy, settings.paths, traversal});
+            entry.make({scene.scene(), camera, scene.lights(), scene.texels(), strategy, settings.paths, traversal,
+                        scene.integrator_data(camera, settings.paths).get()});
         const auto base = strategy.base_point(0);
         const LaunchGrid grid(ThreadMap::tile, 16, 16, 1);
         for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {

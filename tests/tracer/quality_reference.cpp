@@ -84,13 +84,17 @@ TEST_CASE("a clamp scales samples down to its value, keeps their colour and is r
 
 TEST_CASE("every setting that changes the picture changes the key and the cached file's name", "[quality]") {
     const std::string key = reference_key(courtyard(), small());
-    std::vector<ReferenceSettings> others(6, small());
+    std::vector<ReferenceSettings> others(8, small());
     others[0].width = 25;
     others[1].height = 17;
     others[2].spp = 8;
     others[3].paths.bounces = 4;
     others[4].paths.russian_roulette = true;
     others[5].clamp = 10;
+    others[6].paths.integrator = "ao";
+    others[7].paths.integrator = "ao";
+    others[7].paths.parameters.set("radius", "0.5");
+    CHECK(reference_key(courtyard(), others[6]) != reference_key(courtyard(), others[7]));
     for (const auto& other : others) {
         CHECK(reference_key(courtyard(), other) != key);
         CHECK(cached_reference_path(reference_key(courtyard(), other)) != cached_reference_path(key));

@@ -17,7 +17,7 @@ namespace {
 std::string provenance_json(const Header& header) {
     bool newer = header.provenance.execution != Provenance{}.execution;
     newer |= header.issue;
-    for (const Region& region : header.regions) newer |= !region.pages.empty();
+    for (const Region& region : header.regions) newer |= !region.pages.empty() || role_of(region.kind).version > 1;
     return provenance_to_json(header.provenance, newer ? 2 : 1);
 }
 

@@ -71,6 +71,19 @@ Sample issue() {
     return sample;
 }
 
+/// Screen-space reads again, of a depth buffer, each pixel's normal first.
+Sample depths() {
+    Sample sample = texel_reads({4, 0, 0, 1, 2});
+    sample.header.regions[0].kind = ObjectKind::depth;
+    sample.header.regions.push_back({ObjectKind::normal, 0x7f7100000000u, 4, 4, sample.header.regions[0].count, 0, {}});
+    for (WarpTrace& warp : sample.warps) {
+        warp.records.insert(warp.records.begin() + 1, {0xffffffffu, 1, RayType::shadow, 0, 0});
+        const std::vector<std::uint32_t> first(warp.elements.begin(), warp.elements.begin() + warp_lanes);
+        warp.elements.insert(warp.elements.begin(), first.begin(), first.end());
+    }
+    return sample;
+}
+
 struct Good {
     std::string name;
     std::function<Sample()> make;
@@ -101,6 +114,7 @@ std::vector<Good> good_files() {
          }},
         {"pages", pages},
         {"issue", issue},
+        {"depths", depths},
     };
 }
 
@@ -134,10 +148,10 @@ std::vector<Bad> bad_files() {
         {"empty", [](Bytes& b) { b.clear(); }, "offset 0: magic: expected RCTRACE, found an empty file"},
         {"wrong-magic", [](Bytes& b) { b[0] = 'X'; },
          "offset 0: magic: expected RCTRACE, found other bytes; this is no raycache trace"},
-        {"newer-version", [](Bytes& b) { b[8] = 5; },
-         "offset 8: format version: expected at most 4, found 5; this raycache reads version 4: install a newer one to "
-         "read version 5"},
-        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 4, found 0"},
+        {"newer-version", [](Bytes& b) { b[8] = 6; },
+         "offset 8: format version: expected at most 5, found 6; this raycache reads version 5: install a newer one to "
+         "read version 6"},
+        {"version-zero", head(8, 0), "offset 8: format version: expected 1 to 5, found 0"},
         {"issue-in-version-3", [](Bytes& b) { b[8] = 3, b[40] = 1, b[44] = 1, reseal_head(b); },
          "offset 44: reserved bits: expected 0, found 0x00000001"},
         {"reserved-bit", head(12, 1), "offset 12: reserved bits: expected 0, found 0x00000001"},

@@ -68,6 +68,14 @@ TEST_CASE("only a trace that needs version 2 is one") {
     CHECK(version(wavefront_buffers({})) == 2);
 }
 
+TEST_CASE("depths and normals are of version 5, and come back exactly") {
+    Sample sample = texel_reads({2, 0, 0, 2, 4});
+    sample.header.regions[0].kind = ObjectKind::depth;
+    check_round_trip(sample, 3);
+    sample.header.regions[0].kind = ObjectKind::normal;
+    check_round_trip(sample, 2);
+}
+
 TEST_CASE("a region of pages is of version 3, and says where its elements lie") {
     const TemporaryFolder folder;
     Sample sample = texel_reads({1, 0, 0, 1, 1});

@@ -246,7 +246,7 @@ Sample wavefront_buffers(const Shape& shape) {
     header.warps_per_launch = 2 * shape.warps;
     header.kernels_per_launch = 2;
     constexpr std::uint32_t slots = 300;
-    for (unsigned kind = 0; kind < object_kinds; ++kind) {
+    for (unsigned kind = 0; kind < object_kinds_of(2); ++kind) {
         const std::uint64_t buffer = kind == 6 || kind == 7 || kind == 8 ? kind - 3 : kind;  // shares its addresses
         header.regions.push_back({static_cast<ObjectKind>(kind), buffer << 32, 32, 32, slots, 0, {}});
     }

@@ -240,9 +240,15 @@ void MeasureJob::check() const {
             }))
             throw UsageError(
                 fmt::format("baseline '{}' is none of the strategies; expected one of --strategy", baseline));
-    for (const tracer::CaptureSettings& settings : capture_settings(scene, sampling, cases))
+    for (const tracer::CaptureSettings& settings : capture_settings(scene, sampling, cases)) {
         if (settings.execution.execution == tracer::Execution::wavefront)
             throw UsageError("a wavefront cannot be measured: rays are logged as a megakernel's warps start them");
+        if (!tracer::integrator_entry(settings.paths.integrator).walks_bvh)
+            throw UsageError(
+                fmt::format("integrator {} cannot be measured: it sends no ray through a BVH that Embree could walk; "
+                            "expected another --integrator",
+                            settings.paths.integrator));
+    }
 }
 
 MeasureResult run(const MeasureJob& job, Observer& observer, const FileNames& outputs) {

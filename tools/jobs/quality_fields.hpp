@@ -25,24 +25,6 @@ struct EnumNames<tracer::LightSampling> {
         std::pair{tracer::LightSampling::nee, "nee"}, std::pair{tracer::LightSampling::mis, "mis"}};
 };
 
-template <>
-struct Fields<tracer::PathSettings> {
-    using S = tracer::PathSettings;
-    static constexpr std::tuple all{Field{"bounces", &S::bounces},
-                                    Field{"russian_roulette", &S::russian_roulette},
-                                    Field{"bounces_diffuse", &S::bounces_diffuse},
-                                    Field{"bounces_transmission", &S::bounces_transmission},
-                                    Field{"lights", &S::lights},
-                                    Field{"integrator", &S::integrator}};
-};
-
-template <>
-struct Fields<tracer::SampleSet> {
-    using S = tracer::SampleSet;
-    static constexpr std::tuple all{Field{"spp", &S::spp}, Field{"seed", &S::seed}, Field{"dimensions", &S::dimensions},
-                                    Field{"width", &S::width}};
-};
-
 /// {"k": "2.5", …}
 template <>
 struct Codec<tracer::Parameters> {
@@ -59,6 +41,25 @@ struct Codec<tracer::Parameters> {
             out.set(name, text);
         }
     }
+};
+
+template <>
+struct Fields<tracer::PathSettings> {
+    using S = tracer::PathSettings;
+    static constexpr std::tuple all{Field{"bounces", &S::bounces},
+                                    Field{"russian_roulette", &S::russian_roulette},
+                                    Field{"bounces_diffuse", &S::bounces_diffuse},
+                                    Field{"bounces_transmission", &S::bounces_transmission},
+                                    Field{"lights", &S::lights},
+                                    Field{"integrator", &S::integrator},
+                                    Field{"parameters", &S::parameters}};
+};
+
+template <>
+struct Fields<tracer::SampleSet> {
+    using S = tracer::SampleSet;
+    static constexpr std::tuple all{Field{"spp", &S::spp}, Field{"seed", &S::seed}, Field{"dimensions", &S::dimensions},
+                                    Field{"width", &S::width}};
 };
 
 template <>

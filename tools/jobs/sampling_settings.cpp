@@ -42,15 +42,25 @@ std::string parameter_command(const tracer::CaptureSettings& settings) {
     return text;
 }
 
-/// Options of paths() that differ from the defaults.
+/// Options of paths() that the integrator reads: --bounces, and those that differ from the defaults.
 std::string path_command(const SamplingSettings& sampling) {
+    const tracer::IntegratorEntry& entry = tracer::integrator_entry(sampling.integrator);
     std::string text;
-    if (sampling.bounces_diffuse) text += fmt::format(" --bounces-diffuse {}", *sampling.bounces_diffuse);
-    if (sampling.bounces_transmission)
-        text += fmt::format(" --bounces-transmission {}", *sampling.bounces_transmission);
-    if (sampling.lights != "auto") text += " --lights " + sampling.lights;
+    if (entry.follows_light) {
+        text += fmt::format(" --bounces {}", sampling.bounces);
+        if (sampling.bounces_diffuse) text += fmt::format(" --bounces-diffuse {}", *sampling.bounces_diffuse);
+        if (sampling.bounces_transmission)
+            text += fmt::format(" --bounces-transmission {}", *sampling.bounces_transmission);
+        if (sampling.lights != "auto") text += " --lights " + sampling.lights;
+    }
     if (sampling.integrator != tracer::default_integrator) text += " --integrator " + sampling.integrator;
-    if (sampling.russian_roulette) text += " --russian-roulette";
+    for (const tracer::ParameterEntry& p : entry.parameters) {
+        const auto given = sampling.integrator_parameters.find(p.name);
+        if (given == sampling.integrator_parameters.end() || given->second.empty() || given->second == p.fallback)
+            continue;
+        text += fmt::format(" --{} {}", p.name, given->second);
+    }
+    if (entry.follows_light && sampling.russian_roulette) text += " --russian-roulette";
     return text;
 }
 
@@ -78,7 +88,10 @@ tracer::PathSettings SamplingSettings::paths() const {
     settings.bounces_transmission = bounces_transmission.value_or(settings.bounces_transmission);
     settings.lights = tracer::light_sampling_from(lights);
     settings.integrator = integrator;
+    for (const auto& [name, value] : integrator_parameters)
+        if (!value.empty()) settings.parameters.set(name, value);
     tracer::check(settings);
+    if (!tracer::integrator_entry(integrator).follows_light) settings.bounces = 0;
     return settings;
 }
 
@@ -154,10 +167,10 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     settings.thread_map = tracer::thread_map_of(one.strategy, sampling.thread_map);
     settings.program = program_name;
     settings.command = fmt::format(
-        "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{} --bounces {}{} "
+        "raycache capture {} --strategy {} --sequence {} --spp {} --trace-samples {} --resolution {}x{}{} "
         "--thread-map {}{} --seed {}{}",
         of_case(scene, one).command(), decorrelation, one.sequence, one.spp, std::min(sampling.trace_samples, one.spp),
-        size.width, size.height, sampling.bounces, path_command(sampling), tracer::to_string(settings.thread_map),
+        size.width, size.height, path_command(sampling), tracer::to_string(settings.thread_map),
         parameter_command(settings), sampling.seed,
         wavefront ? " --execution wavefront --order " + settings.execution.order : "");
     return settings;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct SamplingSettings {
     std::string lights = "auto";                                         ///< auto, bsdf, nee, mis
     bool russian_roulette = false;
     std::string integrator = tracer::default_integrator;  ///< a name of integrators()
+    /// Of integrator_parameters(), by name; empty: not given.
+    std::map<std::string, std::string> integrator_parameters;
 
     std::string k = "2.5";  ///< or "discrepancy"
     std::string s = "2";    ///< or "full"

@@ -1,6 +1,9 @@
 // The keys of jobs' settings. docs/jobs.md describes them for readers.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "tools/jobs/fields.hpp"
 #include "tools/jobs/job_text.hpp"
 
@@ -16,6 +19,22 @@ struct Fields<SceneSettings> {
                                     Field{"layout", &S::layout},   Field{"bvh_cache", &S::bvh_cache}};
 };
 
+/// Texts by name: {"radius": "0.5", …}
+template <>
+struct Codec<std::map<std::string, std::string>> {
+    static Json write(const std::map<std::string, std::string>& texts) {
+        Json object = Json::object();
+        for (const auto& [name, text] : texts)
+            if (!text.empty()) object[name] = text;
+        return object;
+    }
+    static void read(const Reader& reader, const Json& json, const std::string& place,
+                     std::map<std::string, std::string>& out) {
+        if (!json.is_object()) reader.wrong(place, "an object {…}", json);
+        for (const auto& [name, value] : json.items()) reader.read(value, join_places(place, name), out[name]);
+    }
+};
+
 template <>
 struct Fields<SamplingSettings> {
     using S = SamplingSettings;
@@ -26,6 +45,7 @@ struct Fields<SamplingSettings> {
                                     Field{"lights", &S::lights},
                                     Field{"russian_roulette", &S::russian_roulette},
                                     Field{"integrator", &S::integrator},
+                                    Field{"integrator_parameters", &S::integrator_parameters},
                                     Field{"k", &S::k},
                                     Field{"s", &S::s},
                                     Field{"mu", &S::mu},

@@ -61,10 +61,11 @@ Option* Option::number_or(const std::string& word) {
 Option* Option::whole_or(const std::string& word) {
     number_word_ = word;
     kind_ = Kind::whole;
-    type_ = "N|" + word;
+    type_ = word.empty() ? "N" : "N|" + word;
     return check([this](std::string& found) {
         if (found != number_word_)
-            read_whole(found, name(), whole_, fmt::format("{}, or '{}'", describe(whole_), number_word_));
+            read_whole(found, name(), whole_,
+                       number_word_.empty() ? "" : fmt::format("{}, or '{}'", describe(whole_), number_word_));
     });
 }
 

@@ -29,7 +29,7 @@ public:
     Option* required(bool value = true);
     Option* range(std::uint64_t least, std::uint64_t most);
     Option* range(double least, double most);
-    /// A text that is a number; the same, or this word.
+    /// A text that is a number; the same, or this word (none: "").
     Option* number();
     Option* number_or(const std::string& word);
     Option* whole_or(const std::string& word);

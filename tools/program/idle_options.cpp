@@ -114,6 +114,42 @@ std::string limit_rule(std::uint32_t limit, const Case& c) {
     return limit > c.paths.bounces ? fmt::format("a path has {} bounces at most", c.paths.bounces) : "";
 }
 
+/// "ao does not read it (path does)": of the integrators.
+template <class Reads>
+std::string unread_by_integrator(const Case& c, const Reads& reads) {
+    const tracer::IntegratorEntry& own = tracer::integrator_entry(c.paths.integrator);
+    if (reads(own)) return {};
+    std::string names;
+    std::size_t count = 0;
+    for (const tracer::IntegratorEntry& entry : tracer::integrators())
+        if (reads(entry)) names += (count++ == 0 ? "" : ", ") + entry.name;
+    return fmt::format("integrator {} does not read it ({} do{})", own.name, names, count == 1 ? "es" : "");
+}
+
+std::string light_rule(const Case& c, const Context&) {
+    return unread_by_integrator(c, [](const tracer::IntegratorEntry& entry) { return entry.follows_light; });
+}
+
+std::string bvh_rule(const Case& c, const Context& context) {
+    const std::string reason = launches_rule(c, context);
+    if (!reason.empty() || tracer::integrator_entry(c.paths.integrator).walks_bvh) return reason;
+    return fmt::format("integrator {} walks no BVH", c.paths.integrator);
+}
+
+Rule integrator_rule(const std::string& name) {
+    return [name](const Case& c, const Context&) {
+        return unread_by_integrator(c, [&](const tracer::IntegratorEntry& entry) { return entry.has_parameter(name); });
+    };
+}
+
+/// `rule`, of a path with bounces; others do not get so far.
+Rule with_light(const Rule& rule) {
+    return [rule](const Case& c, const Context& context) {
+        const std::string reason = light_rule(c, context);
+        return reason.empty() ? rule(c, context) : reason;
+    };
+}
+
 struct OptionRule {
     const char* option;
     Rule why_unread;
@@ -134,18 +170,20 @@ const std::vector<OptionRule>& rules() {
         {"--seed", seed_rule},
         {"--trace-samples", trace_samples_rule},
         {"--thread-map", thread_map_rule},
-        {"--spatial-splits", launches_rule},
-        {"--layout", launches_rule},
-        {"--bvh-cache", launches_rule},
+        {"--spatial-splits", bvh_rule},
+        {"--layout", bvh_rule},
+        {"--bvh-cache", bvh_rule},
         {"--set", launches_rule},
         {"--warps-per-sm", launches_rule},
-        {"--bounces-diffuse", [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_diffuse, c); }},
+        {"--bounces", light_rule},
+        {"--lights", light_rule},
+        {"--bounces-diffuse",
+         with_light([](const Case& c, const Context&) { return limit_rule(c.paths.bounces_diffuse, c); })},
         {"--bounces-transmission",
-         [](const Case& c, const Context&) { return limit_rule(c.paths.bounces_transmission, c); }},
-        {"--russian-roulette",
-         [](const Case& c, const Context&) {
+         with_light([](const Case& c, const Context&) { return limit_rule(c.paths.bounces_transmission, c); })},
+        {"--russian-roulette", with_light([](const Case& c, const Context&) {
              return c.paths.bounces < 2 ? std::string("it begins at the second bounce") : std::string();
-         }},
+         })},
         {"--order",
          [](const Case& c, const Context& context) {
              return context.value("--order") == c.execution.order
@@ -186,6 +224,10 @@ std::vector<std::string> idle_options(const Command& command, std::span<const tr
     if (cases.empty()) return lines;
     for (const OptionRule& rule : rules())
         if (context.given(rule.option)) add(rule.option, rule.why_unread);
+    for (const tracer::ParameterEntry& p : tracer::integrator_parameters()) {
+        const std::string option = fmt::format("--{}", p.name);
+        if (context.given(option.c_str())) add(option, integrator_rule(p.name));
+    }
     if (const Option* given = command.find_option("--param"))
         for (const std::string& word : given->words()) {
             const std::string name = word.substr(0, word.find('='));

@@ -131,7 +131,30 @@ void SamplingOptions::add_picture(Command& command) {
         ->choices("integrator", names_of(tracer::integrators()));
     command.add_flag("--russian-roulette", russian_roulette,
                      "end dim paths early at random; breaks lock-step comparisons");
+    add_integrator_parameters(command);
     command.group("");
+}
+
+void SamplingOptions::add_integrator_parameters(Command& command) {
+    for (const tracer::ParameterEntry& p : tracer::integrator_parameters()) {
+        std::vector<std::string> readers;
+        for (const tracer::IntegratorEntry& entry : tracer::integrators())
+            if (entry.has_parameter(p.name)) readers.push_back(entry.name);
+        Option* option =
+            command.add_option(fmt::format("--{}", p.name), integrator_parameters[p.name],
+                               fmt::format("of integrator {}: {}", fmt::join(readers, ", "), p.description));
+        option->default_text(p.fallback);
+        if (p.has_choices())
+            option->choices(p.label, p.choice_names());
+        else if (p.check)
+            option->check([check = p.check](std::string& word) { check(word); });
+        else if (p.whole)
+            option->range(static_cast<std::uint64_t>(p.least), static_cast<std::uint64_t>(p.most))->whole_or(p.word);
+        else if (*p.word)
+            option->range(p.least, p.most)->number_or(p.word);
+        else
+            option->range(p.least, p.most)->number();
+    }
 }
 
 void SamplingOptions::add_strategy(Command& command) {

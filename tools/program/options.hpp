@@ -23,10 +23,11 @@ struct SceneOptions : SceneSettings {
 
 /// Paths and samples of one strategy, except its name and N.
 struct SamplingOptions : SamplingSettings {
-    void add_picture(Command&);    ///< --resolution, and what paths() is made of
-    void add_strategy(Command&);   ///< --k --s --mu --cycles-… --interleave --share --seed
-    void add_launches(Command&);   ///< --trace-samples --thread-map
-    void add_execution(Command&);  ///< --execution --order
+    void add_picture(Command&);                ///< --resolution, and what paths() is made of
+    void add_integrator_parameters(Command&);  ///< of add_picture(): --radius …
+    void add_strategy(Command&);               ///< --k --s --mu --cycles-… --interleave --share --seed
+    void add_launches(Command&);               ///< --trace-samples --thread-map
+    void add_execution(Command&);              ///< --execution --order
 };
 
 /// --threads, and the limit it sets for the life of the object this returns.

@@ -1,5 +1,6 @@
 // The scene in Embree: its own BVH and its robust ray queries over the same triangles. Renders walk their rays with it,
-// tests and benchmarks take it as the referee; never used by a capture, which needs the walk itself.
+// tests and benchmarks take it as the referee, and buffers that an integrator reads are drawn by it; the rays of a
+// capture are not walked so, since it needs the walk itself.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Primary rays of a pinhole camera.
+// Primary rays of a pinhole camera, and where points lie in its picture.
 #pragma once
 
 #include <cmath>
@@ -30,6 +30,25 @@ public:
         made.origin = eye_;
         made.direction = normalize(forward_ + right_ * sx + up_ * sy);
         return made;
+    }
+
+    std::uint32_t width() const { return static_cast<std::uint32_t>(width_); }
+    std::uint32_t height() const { return static_cast<std::uint32_t>(height_); }
+
+    /// A direction in the camera's frame: x to the right, y up, z along the view.
+    Vec3 to_view(Vec3 direction) const {
+        return {dot(direction, right_), dot(direction, up_), dot(direction, forward_)};
+    }
+    /// Where a point of that frame, its origin the eye, lies in the picture: in pixels from the top left corner. Its
+    /// depth z must be above 0.
+    Vec2 project(Vec3 view) const {
+        const float scale = height_ / (half_height_ * view.z);
+        return {0.5F * (width_ + view.x * scale), 0.5F * (height_ - view.y * scale)};
+    }
+    /// The point of that frame which lies there, at that depth.
+    Vec3 unproject(Vec2 place, float depth) const {
+        const float scale = depth * half_height_ / height_;
+        return {(2 * place.x - width_) * scale, (height_ - 2 * place.y) * scale, depth};
     }
 
 private:

@@ -37,6 +37,7 @@ void check(const PathSettings& settings) {
     limit(settings.bounces_diffuse, "--bounces-diffuse");
     limit(settings.bounces_transmission, "--bounces-transmission");
     integrator_entry(settings.integrator);
+    for (const auto& [name, value] : settings.parameters.given()) check_parameter(integrator_parameter(name), value);
 }
 
 }  // namespace raycache::tracer

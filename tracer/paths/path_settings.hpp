@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "tracer/sampling/parameters.hpp"
+
 namespace raycache::tracer {
 
 inline constexpr std::uint32_t max_bounces = 64;
@@ -31,9 +33,11 @@ struct PathSettings {
     std::uint32_t bounces_diffuse = max_bounces, bounces_transmission = max_bounces;
     LightSampling lights = LightSampling::automatic;
     std::string integrator = default_integrator;  ///< a name of integrators()
+    Parameters parameters;                        ///< of the integrator: what its entry states
 };
 
-/// Throws UsageError for more than `max_bounces` of any kind, and for an unknown integrator.
+/// Throws UsageError for more than `max_bounces` of any kind, for an unknown integrator, and for parameters that none
+/// has or that may not be so.
 void check(const PathSettings&);
 
 }  // namespace raycache::tracer

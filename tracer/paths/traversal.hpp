@@ -1,4 +1,5 @@
-// Who walks the rays of an integrator, a warp at a time: WarpTraversal in captures, EmbreeTraversal in renders.
+// Who walks the rays of an integrator, a warp at a time: WarpTraversal in captures (RegionTraversal where no BVH is
+// walked), EmbreeTraversal in renders.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,13 @@ public:
     /// The lanes of `mask` each read one texel for shading; lane l reads `elements[l]`.
     virtual void read_texels(std::uint32_t mask, traces::RayType, std::uint8_t bounce,
                              const std::uint32_t* elements) = 0;
+
+    // Of integrators that read memory of their own (IntegratorData::regions()). Nothing is recorded by default.
+    /// The lanes of `mask` each begin a ray that walks no BVH: what they read next belongs to it.
+    virtual void start(std::uint32_t /*mask*/, traces::RayType, std::uint8_t /*bounce*/) {}
+    /// The lanes of `mask` each read one element of the integrator's region `region`; lane l reads `elements[l]`.
+    virtual void read_region(std::uint32_t /*mask*/, traces::RayType, std::uint8_t /*bounce*/, std::uint8_t /*region*/,
+                             const std::uint32_t* /*elements*/) {}
 };
 
 }  // namespace raycache::tracer

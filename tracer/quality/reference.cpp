@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tracer/paths/integrators/integrator.hpp"
 #include "traces/error.hpp"
 #include "traces/memory_budget.hpp"
 
@@ -44,7 +45,7 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
     const Scene& scene = prepared.scene();
     const Camera& camera = prepared.camera();
     // A field that is not part of the key would let one picture stand for another.
-    const auto& [bounces, roulette, reflections, transmissions, lights, integrator] = settings.paths;
+    const auto& [bounces, roulette, reflections, transmissions, lights, integrator, parameters] = settings.paths;
     static_assert(sizeof(Sun) == 28, "put the new field of Sun into the key below");
     std::string key = fmt::format(
         "raycache reference 3; scene {:016x}, {} triangles, sky {}; camera eye {} forward {} up {} fov {}; {}x{} "
@@ -58,6 +59,8 @@ std::string reference_key(const PreparedScene& prepared, const ReferenceSettings
         key += fmt::format("; sun {} irradiance {} radius {}", text(scene.sun->direction), text(scene.sun->irradiance),
                            scene.sun->angular_radius);
     if (integrator != default_integrator) key += fmt::format("; integrator {}", integrator);
+    for (const auto& [name, value] : parameters.given())
+        if (integrator_entry(integrator).has_parameter(name)) key += fmt::format("; {} {}", name, value);
     if (settings.clamp) key += fmt::format("; samples clamped to {}", *settings.clamp);
     return key;
 }

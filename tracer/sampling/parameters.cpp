@@ -1,6 +1,7 @@
 #include "tracer/sampling/parameters.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -20,6 +21,7 @@ std::optional<Number> read(const std::string& text) {
 }
 
 std::string range_text(const ParameterEntry& entry) {
+    if (entry.has_choices()) return fmt::format("one of: {}", fmt::join(entry.choice_names(), ", "));
     std::string text = std::isfinite(entry.most) ? fmt::format("{:.10g} to {:.10g}", entry.least, entry.most)
                        : entry.whole             ? fmt::format("{:.10g} or more", entry.least)
                                                  : fmt::format("a number of {:.10g} or more", entry.least);
@@ -27,8 +29,8 @@ std::string range_text(const ParameterEntry& entry) {
 }
 
 [[noreturn]] void refuse(const ParameterEntry& entry, const std::string& found) {
-    throw UsageError(
-        fmt::format("sampling: {} must be {}, found {}: {}", entry.label, range_text(entry), found, entry.remedy));
+    throw UsageError(fmt::format("{}: {} must be {}, found {}: {}", entry.topic, entry.label, range_text(entry), found,
+                                 entry.remedy));
 }
 
 template <class Number>
@@ -40,6 +42,13 @@ Number read_in_range(const ParameterEntry& entry, const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<std::string> ParameterEntry::choice_names() const {
+    std::vector<std::string> names;
+    for (const char* name : choices)
+        if (name != nullptr) names.emplace_back(name);
+    return names;
+}
 
 void Parameters::set_real(const std::string& name, double value) { given_[name] = fmt::format("{}", value); }
 
@@ -62,7 +71,7 @@ std::uint64_t Parameters::whole(const ParameterEntry& entry) const {
 }
 
 std::string Parameters::word(const ParameterEntry& entry) const {
-    entry.check(text(entry));
+    check_parameter(entry, text(entry));
     return text(entry);
 }
 
@@ -70,6 +79,11 @@ bool Parameters::is_word(const ParameterEntry& entry) const { return *entry.word
 
 void check_parameter(const ParameterEntry& entry, const std::string& value) {
     if (entry.check) return entry.check(value);
+    if (entry.has_choices()) {
+        for (const std::string& name : entry.choice_names())
+            if (value == name) return;
+        refuse(entry, value);
+    }
     if (*entry.word && value == entry.word) return;
     if (entry.whole)
         read_in_range<std::uint64_t>(entry, value);

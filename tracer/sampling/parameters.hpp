@@ -1,13 +1,15 @@
-// Settings by name, as a user types them. What they mean, who needs them says: a decorrelation states its parameters in
-// its own file, and reads them from here.
+// Settings by name, as a user types them. What they mean, who needs them says: a decorrelation, or an integrator, states
+// its parameters in its own file, and reads them from here.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace raycache::tracer {
 
@@ -24,6 +26,12 @@ struct ParameterEntry {
     const char* word = "";                                  ///< that may stand instead of a number: "discrepancy"
     /// Of what is no number but words: throws UsageError for what it may not be. Null: a number.
     void (*check)(const std::string&) = nullptr;
+    /// Of what is one of a few words, up to the first null: these.
+    std::array<const char*, 4> choices{};
+    const char* topic = "sampling";  ///< in messages: what it belongs to
+
+    bool has_choices() const { return choices[0] != nullptr; }
+    std::vector<std::string> choice_names() const;
 };
 
 /// What was given.
@@ -52,7 +60,7 @@ public:
     double real(const ParameterEntry&) const;
     std::uint64_t whole(const ParameterEntry&) const;
     bool is_word(const ParameterEntry&) const;
-    std::string word(const ParameterEntry&) const;  ///< of an entry with a check
+    std::string word(const ParameterEntry&) const;  ///< of an entry with a check or choices
 
     bool operator==(const Parameters&) const = default;
 

@@ -11,11 +11,13 @@ namespace {
 
 /// Makes the traversal of the first layout in the list whose tree this is.
 template <class Recorder, class... Layouts>
-std::unique_ptr<Traversal> make(const PreparedScene& scene, Recorder& recorder, LayoutList<Layouts...>) {
+std::unique_ptr<Traversal> make(const PreparedScene& scene, Recorder& recorder, std::uint8_t own_regions,
+                                LayoutList<Layouts...>) {
     std::unique_ptr<Traversal> made;
     const auto try_one = [&]<class Tree>(const Tree* tree) {
         if (tree != nullptr)
-            made = std::make_unique<WarpTraversal<Tree, Recorder>>(scene.scene(), *tree, scene.texels(), recorder);
+            made = std::make_unique<WarpTraversal<Tree, Recorder>>(scene.scene(), *tree, scene.texels(), recorder,
+                                                                   own_regions);
         return tree != nullptr;
     };
     if (!(try_one(dynamic_cast<const typename Layouts::Tree*>(&scene.bvh())) || ...))
@@ -26,11 +28,11 @@ std::unique_ptr<Traversal> make(const PreparedScene& scene, Recorder& recorder, 
 }  // namespace
 
 template <class Recorder>
-std::unique_ptr<Traversal> make_traversal(const PreparedScene& scene, Recorder& recorder) {
-    return make(scene, recorder, BvhLayouts{});
+std::unique_ptr<Traversal> make_traversal(const PreparedScene& scene, Recorder& recorder, std::uint8_t own_regions) {
+    return make(scene, recorder, own_regions, BvhLayouts{});
 }
 
-template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, WarpRecorder&);
-template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, NullRecorder&);
+template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, WarpRecorder&, std::uint8_t);
+template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, NullRecorder&, std::uint8_t);
 
 }  // namespace raycache::tracer

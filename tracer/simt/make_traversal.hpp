@@ -9,11 +9,12 @@
 
 namespace raycache::tracer {
 
-/// `Recorder` is WarpRecorder or NullRecorder. Both arguments must outlive what is made.
+/// `Recorder` is WarpRecorder or NullRecorder. Both arguments must outlive what is made. `own_regions`: index of the
+/// first region of the integrator's own.
 template <class Recorder>
-std::unique_ptr<Traversal> make_traversal(const PreparedScene&, Recorder&);
+std::unique_ptr<Traversal> make_traversal(const PreparedScene&, Recorder&, std::uint8_t own_regions = 0);
 
-extern template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, WarpRecorder&);
-extern template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, NullRecorder&);
+extern template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, WarpRecorder&, std::uint8_t);
+extern template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, NullRecorder&, std::uint8_t);
 
 }  // namespace raycache::tracer

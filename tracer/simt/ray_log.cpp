@@ -61,9 +61,10 @@ private:
 struct LogWorker {
     explicit LogWorker(const Capture& capture)
         : traversal(capture.scene()),
-          integrator(integrator_entry(capture.settings().paths.integrator)
-                         .make({capture.scene().scene(), capture.camera(), capture.scene().lights(),
-                                capture.scene().texels(), capture.strategy(), capture.settings().paths, traversal})) {}
+          integrator(
+              integrator_entry(capture.settings().paths.integrator)
+                  .make({capture.scene().scene(), capture.camera(), capture.scene().lights(), capture.scene().texels(),
+                         capture.strategy(), capture.settings().paths, traversal, capture.integrator_data()})) {}
     LogWorker(const LogWorker&) = delete;  // its parts point at each other
 
     LoggingTraversal traversal;

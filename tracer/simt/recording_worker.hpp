@@ -10,7 +10,9 @@
 namespace raycache::tracer {
 
 struct RecordingWorker {
-    RecordingWorker(const PreparedScene&, const CameraRays&, const SamplingStrategy&, const PathSettings&);
+    /// `data`: of the integrator, may be null; `own_regions`: index of the first of its regions in the trace.
+    RecordingWorker(const PreparedScene&, const CameraRays&, const SamplingStrategy&, const PathSettings&,
+                    const IntegratorData* data, std::uint8_t own_regions);
     RecordingWorker(const RecordingWorker&) = delete;  // its parts point at each other
 
     WarpRecorder recorder;

@@ -25,8 +25,11 @@ public:
     /// Of textures: behind those of the layout.
     static constexpr std::uint8_t texel_region = Tree::region_count;
 
-    WarpTraversal(const Scene& scene, const Tree& tree, const TexelLayout& texels, Recorder& recorder)
-        : scene_(&scene),
+    /// `own_regions`: index of the first region of the integrator's own.
+    WarpTraversal(const Scene& scene, const Tree& tree, const TexelLayout& texels, Recorder& recorder,
+                  std::uint8_t own_regions = 0)
+        : own_regions_(own_regions),
+          scene_(&scene),
           tree_(&tree),
           texels_(&texels),
           recorder_(&recorder),
@@ -47,7 +50,19 @@ public:
     void read_texels(std::uint32_t mask, traces::RayType type, std::uint8_t bounce,
                      const std::uint32_t* elements) override {
         recorder_->kind(type, bounce);
-        record_texels(mask, 0, elements);
+        record(mask, texel_region, 0, elements);
+    }
+
+    void start(std::uint32_t mask, traces::RayType type, std::uint8_t bounce) override {
+        recorder_->kind(type, bounce);
+        std::uint32_t symbol = recorder_->start_rays(mask, traces::symbol::end_of_ray);
+        for (; mask != 0; mask &= mask - 1) lane_[std::countr_zero(mask)].last_symbol = symbol++;
+    }
+
+    void read_region(std::uint32_t mask, traces::RayType type, std::uint8_t bounce, std::uint8_t region,
+                     const std::uint32_t* elements) override {
+        recorder_->kind(type, bounce);
+        record(mask, static_cast<std::uint8_t>(own_regions_ + region), 0, elements);
     }
 
 private:
@@ -179,13 +194,13 @@ private:
             textured |= bit_if(cutout.textured, 1U << l);
             if (cutout.solid) solid |= accept(l, hits);
         }
-        if (textured != 0) record_texels(textured, more, elements);
+        if (textured != 0) record(textured, texel_region, more, elements);
         return solid;
     }
 
     /// `more`: lanes that will go on to an element no symbol but a literal leads to.
-    void record_texels(std::uint32_t mask, std::uint32_t more, const std::uint32_t* elements) {
-        OpenRecord out = recorder_->open(mask, texel_region);
+    void record(std::uint32_t mask, std::uint8_t region, std::uint32_t more, const std::uint32_t* elements) {
+        OpenRecord out = recorder_->open(mask, region);
         for (; mask != 0; mask &= mask - 1) {
             const auto l = static_cast<unsigned>(std::countr_zero(mask));
             std::uint32_t& last = lane_[l].last_symbol;
@@ -197,6 +212,7 @@ private:
         recorder_->close(out);
     }
 
+    std::uint8_t own_regions_;
     const Scene* scene_;
     const Tree* tree_;
     const TexelLayout* texels_;

@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "tracer/bvh/embree_scene.hpp"
 #include "tracer/paths/camera_rays.hpp"
 #include "tracer/paths/lights.hpp"
 #include "tracer/paths/path_lanes.hpp"
@@ -16,6 +18,7 @@
 #include "tracer/sampling/sampling_strategy.hpp"
 #include "tracer/scene/scene.hpp"
 #include "tracer/scene/texel_layout.hpp"
+#include "traces/header.hpp"
 
 namespace raycache::tracer {
 
@@ -56,6 +59,23 @@ public:
     virtual PathStages* stages() { return nullptr; }
 };
 
+/// What an integrator works out once for all threads of a capture or a render, and which memory of its own it reads.
+class IntegratorData {
+public:
+    virtual ~IntegratorData() = default;
+    /// Regions that are neither BVH nor textures: kind, sizes and counts. A capture places them in memory, and
+    /// Traversal::read_region() names them by their place in this list.
+    virtual std::vector<traces::Region> regions() const { return {}; }
+};
+
+/// What it is worked out from.
+struct IntegratorSetup {
+    const Scene& scene;
+    const CameraRays& camera;
+    const PathSettings& settings;
+    std::function<const EmbreeScene&()> embree;  ///< built when it is first asked for
+};
+
 /// What an integrator is made of; everything but the settings must outlive it.
 struct IntegratorInput {
     const Scene& scene;
@@ -65,6 +85,7 @@ struct IntegratorInput {
     const SamplingStrategy& strategy;
     const PathSettings& settings;
     Traversal& traversal;
+    const IntegratorData* data = nullptr;  ///< what IntegratorEntry::prepare made; null without one
 };
 
 /// How often the stages of a path come.
@@ -80,11 +101,25 @@ struct IntegratorEntry {
     std::unique_ptr<Integrator> (*make)(const IntegratorInput&);
     /// Null where it is not cut into stages: it then runs as a megakernel alone.
     StagePlan (*stages)(const PathSettings&, const Lights&);
+
+    bool follows_light = true;  ///< reads bounces and their limits, lights, roulette; without, these have no effect
+    bool walks_bvh = true;      ///< false: it asks its Traversal for start() and read_region() alone
+    /// What it may be given (PathSettings::parameters). Integrators may have one of a name in common.
+    std::vector<ParameterEntry> parameters = {};
+    /// Null: it needs nothing of the kind.
+    std::shared_ptr<const IntegratorData> (*prepare)(const IntegratorSetup&) = nullptr;
+
+    bool has_parameter(const std::string& name) const;
 };
 const std::vector<IntegratorEntry>& integrators();
 
 /// Throws UsageError for an unknown name: lists the valid ones, and the closest.
 const IntegratorEntry& integrator_entry(const std::string& name);
+
+/// The parameters of all integrators, each name once.
+const std::vector<ParameterEntry>& integrator_parameters();
+/// The one of that name. Throws UsageError for an unknown name: lists the valid ones, and the closest.
+const ParameterEntry& integrator_parameter(const std::string& name);
 
 /// Of one sample, by the integrator that the settings name.
 std::uint32_t sample_dimensions(const PathSettings&);
