@@ -63,7 +63,7 @@ constexpr ParameterEntry bytes_parameter{.name = "depth-bytes",
                                          .choices = {"2", "4"},
                                          .topic = ssao_topic};
 
-DepthFormat format_of(const Parameters& parameters) {
+DepthFormat depth_format_of(const Parameters& parameters) {
     return {parameters.word(layout_parameter) == "tiled" ? DepthLayout::tiled : DepthLayout::linear,
             parameters.word(bytes_parameter) == "2" ? 2U : 4U};
 }
@@ -78,7 +78,7 @@ ScreenMarch march_of(const Scene& scene, const PathSettings& settings) {
 struct ScreenSpace final : IntegratorData {
     explicit ScreenSpace(const IntegratorSetup& setup)
         : march(march_of(setup.scene, setup.settings)),
-          depths(draw_depth(setup.scene, setup.camera, setup.embree(), format_of(setup.settings.parameters))) {}
+          depths(draw_depth(setup.scene, setup.camera, setup.embree(), depth_format_of(setup.settings.parameters))) {}
     std::vector<traces::Region> regions() const override { return depths.regions(); }
 
     ScreenMarch march;
