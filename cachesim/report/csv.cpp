@@ -1,5 +1,6 @@
 #include <initializer_list>
 
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/csv_line.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/verdict.hpp"
@@ -29,8 +30,11 @@ std::string to_csv(const Report& report) {
         if (part == Presence::always)
             for (const char* title : {"verdict_level", "verdict"}) header.text(title);
     }
+    const std::size_t levels = report.has_l3() ? 3 : 2;
+    if (!report.cold.empty()) add_cold_titles(header, levels, false);
     std::string csv = header.end();
-    for (const Row& row : report.rows) {
+    for (std::size_t n = 0; n < report.rows.size(); ++n) {
+        const Row& row = report.rows[n];
         CsvLine line;
         add_names(line, row);
         for (const Presence part : parts) {
@@ -46,6 +50,7 @@ std::string to_csv(const Report& report) {
             line.text(found.level.value_or(""));
             line.text(found.text);
         }
+        if (!report.cold.empty()) add_cold_fields(line, report.cold[n], levels, false);
         csv += line.end();
     }
     return csv;

@@ -1,3 +1,4 @@
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/json_parts.hpp"
 
 namespace raycache::cachesim {
@@ -67,6 +68,7 @@ std::string to_json(const Report& report) {
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         json["rows"].push_back(row_names(report.rows[i]));
         json["rows"].back().update(traffic_json(report, i));
+        if (!report.cold.empty()) json["rows"].back()["cold_launches"] = cold_json(report.cold[i]);
     }
     json["notes"] = Json(report.notes);
     json["figures"] = figures_json(report, nullptr);

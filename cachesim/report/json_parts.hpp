@@ -28,6 +28,7 @@ inline Json json_of(const Verdict& v) {
 inline Json json_of(const WindowSample& w) {
     Json json{{"blocks", w.blocks}, {"indices_per_block", w.indices}, {"windows_per_block", w.windows}};
     if (w.timed_windows) json["timed_windows_per_block"] = w.timed_windows;
+    if (w.all_indices) json["all_indices"] = true;
     json.update({{"unfilled_share", json_of(w.unfilled_share)},
                  {"last_cache_full", w.last_cache_full},
                  {"widening", json_of(w.widening)}});

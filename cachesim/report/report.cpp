@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cachesim/analysis/estimate.hpp"
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/groups.hpp"
 #include "cachesim/report/verdict.hpp"
 #include "cachesim/report/window_notes.hpp"
@@ -89,7 +90,7 @@ void compare(Row& row, const std::vector<Row>& rows, const Baseline& baseline, N
 void widen(Row& row) {
     if (!row.windows) return;
     for (auto& figure : row.figures)
-        if (figure) figure = widened(*figure, row.windows->widening);
+        if (figure) figure = with_interval_of(*row.windows, *figure);
     if (row.factors) row.factors->widen(row.windows->widening);
 }
 
@@ -130,7 +131,8 @@ std::string row_label(const Report& report, const Row& row) {
     return fmt::format("{}, N {}, {}{}", label, row.spp, row.gpu, report.by == GroupBy::none ? "" : ", " + row.group);
 }
 
-Report make_report(const std::vector<Series>& all_series, const Baseline& baseline, GroupBy by) {
+Report make_report(const std::vector<Series>& all_series, const Baseline& baseline, GroupBy by,
+                   const std::vector<ColdLaunches>& cold) {
     Report report;
     report.baseline = baseline;
     report.by = by;
@@ -142,10 +144,12 @@ Report make_report(const std::vector<Series>& all_series, const Baseline& baseli
     for (Row& row : report.rows) {
         if (!baseline.empty() && !baseline.is(row)) compare(row, report.rows, baseline, notes);
         widen(row);
-        if (row.samples.size() == 1) notes.add("one sample index: no confidence interval");
+        if (row.samples.size() == 1 && !(row.windows && row.windows->all_indices))
+            notes.add("one sample index: no confidence interval");
     }
     note_windows(report.rows, [&](const std::string& note) { notes.add(note); });
     note_compulsory(report, notes);
+    report.cold = cold_figures(cold, all_series, {}, baseline);
     return report;
 }
 

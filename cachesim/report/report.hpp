@@ -11,6 +11,7 @@
 #include "cachesim/analysis/estimate.hpp"
 #include "cachesim/analysis/traffic_identity.hpp"
 #include "cachesim/replay/statistics.hpp"
+#include "cachesim/report/cold_figures.hpp"
 #include "cachesim/report/figures/traffic_figures.hpp"
 #include "cachesim/report/origin.hpp"
 #include "cachesim/report/table.hpp"
@@ -45,6 +46,7 @@ struct Report {
     Baseline baseline;
     GroupBy by = GroupBy::none;
     std::vector<Row> rows;
+    std::vector<ColdFigures> cold;   ///< row by row; none unless launches from cold caches were asked for
     std::vector<std::string> notes;  ///< such as "no baseline row for …", "one sample index: no confidence interval"
 
     /// Whether any row's GPU has an L3: only then do tables show what concerns it.
@@ -59,8 +61,10 @@ struct Report {
 /// What a sentence calls a row: "micro-jitter, N 64, gtx-980-ti", and what else tells it from others.
 std::string row_label(const Report&, const Row&);
 
-/// Throws UsageError if `baseline` was given by the user but is in no series.
-Report make_report(const std::vector<Series>&, const Baseline& baseline, GroupBy);
+/// Throws UsageError if `baseline` was given by the user but is in no series. `cold`: of each series, in the same order,
+/// or none; only of whole launches (GroupBy::none).
+Report make_report(const std::vector<Series>&, const Baseline& baseline, GroupBy,
+                   const std::vector<ColdLaunches>& cold = {});
 
 /// Tables of at most `width` columns where they can be so narrow: TextTable.
 std::string to_text(const Report&, std::size_t width = text_width);

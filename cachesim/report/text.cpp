@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/explanation.hpp"
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/report.hpp"
@@ -200,6 +201,7 @@ std::string to_text(const Report& report, std::size_t width) {
     std::string text = main_table(report, width);
     text += legend(report);
     text += factor_table(report, width);
+    text += cold_tables(report, width);
     if (shows_undefined(report)) text += undefined_legend;
     if (const std::string why = factor_sentences(report); !why.empty()) text += '\n' + why;
     if (!report.notes.empty()) text += '\n';

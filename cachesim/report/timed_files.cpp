@@ -2,6 +2,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/csv_line.hpp"
 #include "cachesim/report/json_parts.hpp"
 #include "cachesim/report/timed_report.hpp"
@@ -35,6 +36,7 @@ Json row_json(const TimedReport& report, std::size_t n) {
         out["busiest"] = text_in_time(row, row.busiest);
     }
     if (!report.traffic.rows.empty()) out["traffic"] = traffic_json(report.traffic, n);
+    if (!report.cold.empty()) out["cold_launches"] = cold_json(report.cold[n]);
     const auto found = verdict_of(report, n);
     out["verdict"] = found ? json_of(*found) : Json(nullptr);
     return out;
@@ -52,7 +54,9 @@ constexpr TrafficKey of_traffic[] = {"l2_bytes_per_ray", "dram_bytes_per_ray", "
                                      "l2_bytes_ratio", "dram_bytes_ratio"};
 constexpr bool has_interval(TrafficKey key) { return key.index != TrafficKey("dram_compulsory_share").index; }
 
-std::string titles() {
+std::size_t cold_levels(const TimedReport& report) { return report.traffic.has_l3() ? 3 : 2; }
+
+std::string titles(const TimedReport& report) {
     CsvLine line;
     const auto add = [&](std::initializer_list<const char*> titles) {
         for (const char* title : titles) line.text(title);
@@ -65,6 +69,7 @@ std::string titles() {
     for (const TrafficKey key : of_traffic)
         has_interval(key) ? add_title(line, traffic_figures[key.index]) : line.text(traffic_figures[key.index].key);
     add({"verdict_level", "verdict", "traversal"});
+    if (!report.cold.empty()) add_cold_titles(line, cold_levels(report), true);
     return line.end();
 }
 
@@ -93,6 +98,7 @@ std::string fields(const TimedReport& report, std::size_t n) {
     line.text(found.level.value_or(""));
     line.text(found.text);
     line.text(row.traversal);
+    if (!report.cold.empty()) add_cold_fields(line, report.cold[n], cold_levels(report), true);
     return line.end();
 }
 
@@ -104,15 +110,15 @@ std::string to_json(const TimedReport& report) {
     Json figures = report.traffic.rows.empty() ? Json::array() : figures_json(report.traffic, "traffic");
     for (const TimedFigure& figure : timed_figures)
         if (figure.in_json() && report.shows(figure.presence)) figures.push_back(figure_json(figure, nullptr));
-    return dump({{"baseline", report.baseline.strategy},
-                 {"baseline_gpu", report.baseline.gpu.empty() ? Json(nullptr) : Json(report.baseline.gpu)},
-                 {"rows", rows},
-                 {"notes", report.notes},
-                 {"figures", figures}});
+    Json json{{"baseline", report.baseline.strategy},
+              {"baseline_gpu", report.baseline.gpu.empty() ? Json(nullptr) : Json(report.baseline.gpu)}};
+    if (report.fidelity) json["fidelity"] = to_json_value(*report.fidelity);
+    json.update({{"rows", rows}, {"notes", report.notes}, {"figures", figures}});
+    return dump(json);
 }
 
 std::string to_csv(const TimedReport& report) {
-    std::string csv = titles();
+    std::string csv = titles(report);
     for (std::size_t i = 0; i < report.rows.size(); ++i) csv += fields(report, i);
     return csv;
 }

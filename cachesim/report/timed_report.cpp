@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cachesim/analysis/estimate.hpp"
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/traversal_note.hpp"
 #include "cachesim/report/window_notes.hpp"
 
@@ -76,7 +77,7 @@ void note_occupancy(TimedReport& report) {
 }  // namespace
 
 TimedReport make_timed_report(const std::vector<TimedSeries>& all, const Baseline& baseline,
-                              const std::vector<Series>& traffic) {
+                              const std::vector<Series>& traffic, const std::vector<ColdLaunches>& cold) {
     TimedReport report;
     report.baseline = baseline;
     check_baseline(all, baseline);
@@ -97,12 +98,14 @@ TimedReport make_timed_report(const std::vector<TimedSeries>& all, const Baselin
         }
         if (row.windows)
             for (auto& figure : row.figures)
-                if (figure) figure = widened(*figure, row.windows->widening);
+                if (figure) figure = with_interval_of(*row.windows, *figure);
+        if (series.speed_up) row.figures[TimedKey("speed_up").index] = series.speed_up;
         report.rows.push_back(std::move(row));
     }
     note_occupancy(report);
     note_missing_times(report);
     if (!traffic.empty()) {
+        report.cold = cold_figures(cold, traffic, all, baseline);
         report.traffic = make_report(traffic, baseline, GroupBy::none);
         for (const std::string& note : report.traffic.notes) report.notes.push_back(note);
     } else {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cachesim/replay/timed/timed_statistics.hpp"
+#include "cachesim/report/fidelity.hpp"
 #include "cachesim/report/figures/timed_figures.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/verdict.hpp"
@@ -19,6 +20,9 @@ struct TimedSeries : Origin {
     std::string no_time;                 ///< no_time_note() of the GPU: only the counts of the launches are to be shown
     std::string traversal = "software";  ///< traversal_name() of the GPU
     std::vector<TimedStatistics> launches;  ///< one per sample index, ascending
+    /// Where the speed-up over the baseline was estimated otherwise than from these launches alone
+    /// (cachesim/analysis/double_sampling.hpp): that estimate, its interval as wide as it is to be shown.
+    std::optional<Estimate> speed_up{};
 };
 
 struct TimedRow : TimedSeries {
@@ -44,6 +48,8 @@ struct TimedReport {
     std::vector<TimedRow> rows;
     /// What the functional replay counts of the same launches, row by row; no rows where none was made.
     Report traffic;
+    std::vector<ColdFigures> cold;           ///< as Report has them
+    std::optional<FidelityChoice> fidelity;  ///< where a pilot chose the level of accuracy
     std::vector<std::string> notes;
 
     /// Whether any row's GPU has an L3 that was asked for anything.
@@ -57,10 +63,11 @@ struct TimedReport {
 /// Which traversal was modelled (traversal_note.hpp).
 std::string traversal_note(const TimedReport&);
 
-/// `traffic`: functional replays of the same launches, series by series in the same order, or none. Throws UsageError
-/// if `baseline` was given by the user but is in no series.
+/// `traffic`: functional replays of the same launches, series by series in the same order, or none. `cold`: launches
+/// beside them, likewise, only where there is traffic. Throws UsageError if `baseline` was given by the user but is in no
+/// series.
 TimedReport make_timed_report(const std::vector<TimedSeries>&, const Baseline& baseline,
-                              const std::vector<Series>& traffic = {});
+                              const std::vector<Series>& traffic = {}, const std::vector<ColdLaunches>& cold = {});
 
 /// What there is to say of a row against its baseline, in time and bytes; none without a ratio.
 std::optional<Verdict> verdict_of(const TimedReport&, std::size_t row);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "cachesim/report/cold_launches.hpp"
 #include "cachesim/report/format.hpp"
 #include "cachesim/report/table.hpp"
 #include "cachesim/report/timed_report.hpp"
@@ -157,6 +158,8 @@ std::string to_text(const TimedReport& report, std::size_t width) {
         text += figures_table(report, tables, width, which) + '\n';
     text += paragraph(traversal_note(report) + '.') + legend(report);
     if (!report.traffic.rows.empty()) text += factor_table(report.traffic, width);
+    text += cold_tables(report, width);
+    if (report.fidelity) text += to_text(*report.fidelity, width);
     if (tables.shows_undefined()) text += undefined_legend;
     std::string verdicts;
     for (std::size_t i = 0; i < report.rows.size(); ++i)

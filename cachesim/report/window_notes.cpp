@@ -3,6 +3,12 @@
 namespace raycache::cachesim {
 
 std::string window_note(const WindowSample& w) {
+    if (w.all_indices)
+        return fmt::format(
+            "the steady state (sample after sample of one picture, caches warm, nothing drained) itself: all {} sample "
+            "indices were replayed, so that every ± is 0; the model (docs/accuracy.md) and its assumed "
+            "constants are not exact by that",
+            w.indices);
     return fmt::format(
         "estimates of the steady state (sample after sample of one picture, caches warm, nothing drained) from {} "
         "blocks of {} sample indices, {} windows each; ± is of which indices and places were drawn, not of the model "

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cachesim/analysis/estimate.hpp"
 #include "cachesim/report/origin.hpp"
 
 namespace raycache::cachesim {
@@ -22,6 +23,11 @@ inline constexpr const char* warm_bytes_legend = "bytes read in the steady state
 std::string window_note(const WindowSample&);
 /// Of GPUs whose last cache holds the scene: "…: DRAM bytes are at most those shown".
 std::string unfilled_note(const std::string& gpus);
+
+/// An estimate over blocks as it is to be shown: wider for several looks, exact where nothing was drawn.
+inline Estimate with_interval_of(const WindowSample& windows, const Estimate& e) {
+    return windows.all_indices ? Estimate{e.mean, 0} : widened(e, windows.widening);
+}
 
 /// Calls add(note) for each, once.
 template <class Row, class Add>

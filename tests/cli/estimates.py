@@ -92,6 +92,84 @@ class Estimates(ProgramTest):
                             "wavefront", *GPU)
         self.assertIn("whole launches are replayed", result.stderr)
 
+    def test_cold_launches_stand_beside_the_steady_state(self):
+        timed = [*COMPARE, "--timed", "--windows", "4", "--cold-launches", "2"]
+        result = self.succeeds(*timed, "--json")
+        whole = self.succeeds("compare", *SCENE, *PICTURE, "--spp", "1024", *STRATEGIES, *GPU, "--timed",
+                              "--trace-samples", "2", "--json").json["rows"]
+        for row, launches in zip(result.json["rows"], whole):
+            cold = row["cold_launches"]
+            self.assertEqual((cold["cycles"], cold["samples"]), (launches["cycles"], launches["samples"]))
+            product = cold["steady_cycles"]["mean"] * cold["cold"]["mean"] * cold["ramp"] * cold["tail"]
+            self.assertAlmostEqual(product / cold["cycles"], 1, places=12)
+            self.assertGreater(cold["cold"]["half_width_95"], 0)
+        self.assertIsNone(result.json["rows"][0]["cold_launches"]["speed_up"])
+        self.assertEqual(result.json["rows"][1]["cold_launches"]["speed_up"], whole[1]["speed_up"])
+        text = self.succeeds(*timed).text
+        self.assertIn("2 launches, each (sample indices", text)
+        self.assertIn("launch/steady", text)
+        self.assertIn("cold_over_steady", self.succeeds(*timed, "--csv").text)
+
+    def test_cold_launches_without_time_compare_bytes(self):
+        rows = self.succeeds(*COMPARE, "--windows", "4", "--cold-launches", "1", "--json").json["rows"]
+        for row in rows:
+            self.assertNotIn("cycles", row["cold_launches"])
+            self.assertGreater(row["cold_launches"]["l2_bytes_over_steady"]["mean"], 0)
+
+    def test_cold_launches_that_make_no_sense_are_refused(self):
+        for value in ("0", "-1", "two", "4097"):
+            self.refuses(2, *COMPARE, "--cold-launches", value, mentions=["--cold-launches", value, "expected"])
+        self.refuses(2, "compare", *SCENE, *PICTURE, "--spp", "4", *STRATEGIES, *GPU, "--cold-launches", "5",
+                     mentions=["5 cold launches; expected 1 to 4: N is 4"])
+        for other in (["--exact"], ["--trace-samples", "2"], ["--by", "bounce"], ["--time-budget", "3"],
+                      ["--counters", "ncu"]):
+            self.refuses(2, *COMPARE, "--cold-launches", "1", *other, mentions=["together"])
+        self.refuses(2, *COMPARE, "--execution", "wavefront", "--cold-launches", "1", mentions=["wavefront", "megakernel"])
+        self.refuses(2, "compare", self.capture(), *GPU, "--cold-launches", "1", mentions=["beside traces", "scene"])
+
+    def test_a_pilot_picks_a_level_and_says_why(self):
+        auto = [*COMPARE, "--fidelity", "auto", "--target-error", "50%"]
+        one, two = (self.succeeds(*auto, "--json", "--threads", n) for n in (1, 2))
+        self.assertEqual(one.report, two.report)
+        choice, row = one.json["fidelity"], one.json["rows"][1]
+        self.assertIn(choice["picked"], ("functional", "two-phase", "timed", "exact"))
+        self.assertTrue(choice["reason"])
+        self.assertEqual(len(choice["pilot"]), 1)
+        self.assertLessEqual(row["speed_up"]["half_width_95"], 0.5 * row["speed_up"]["mean"])
+        text = self.succeeds(*auto).text
+        self.assertIn(f"Fidelity: {choice['picked']}, to ±50 % of every speed-up", text)
+        self.assertIn("the same on every machine", " ".join(text.split()))
+
+    def test_small_pictures_are_replayed_as_a_whole(self):
+        small = ["compare", *SCENE, "--resolution", "16x8", "--spp", "4", *STRATEGIES, *GPU]
+        auto = self.warns(*small, "--fidelity", "auto", "--json").json
+        exact = self.warns(*small, "--fidelity", "exact", "--json").json
+        self.assertEqual(auto["fidelity"]["picked"], "exact")
+        self.assertNotIn("fidelity", exact)
+        for a, b in zip(auto["rows"], exact["rows"]):
+            self.assertEqual(a["cycles"], b["cycles"])
+            self.assertTrue(b["windows"]["all_indices"])
+            self.assertEqual(b["cycles_per_ray"]["half_width_95"], 0)
+
+    def test_the_other_levels_are_the_options_that_they_stand_for(self):
+        for level, option in (("functional", []), ("timed", ["--timed"])):
+            asked = self.succeeds(*COMPARE, "--windows", "4", "--fidelity", level, "--json").json
+            self.assertEqual(asked["rows"], self.succeeds(*COMPARE, "--windows", "4", *option, "--json").json["rows"])
+
+    def test_levels_that_make_no_sense_are_refused(self):
+        self.refuses(2, *COMPARE, "--fidelity", "best", mentions=["--fidelity", "best", "functional"])
+        for other in (["--exact"], ["--trace-samples", "2"], ["--by", "bounce"], ["--counters", "ncu"]):
+            self.refuses(2, *COMPARE, "--fidelity", "auto", *other, mentions=["together"])
+        for other in (["--windows", "8"], ["--time-budget", "3"]):
+            self.refuses(2, *COMPARE, "--fidelity", "auto", *other, mentions=["fidelity auto", "target error alone"])
+        for target in ("0%", "-1%", "101%"):
+            self.refuses(2, *COMPARE, "--fidelity", "auto", "--target-error", target, mentions=["--target-error", target])
+        self.refuses(2, *COMPARE, "--fidelity", "functional", "--timed", mentions=["--fidelity functional", "one of them"])
+        self.refuses(2, "compare", *SCENE, *PICTURE, "--spp", "64", "--strategy", "coherent", *GPU, "--fidelity", "auto",
+                     mentions=["expected a baseline and another"])
+        self.refuses(2, *COMPARE, "--execution", "wavefront", "--fidelity", "auto", mentions=["wavefront", "megakernel"])
+        self.refuses(2, "compare", self.capture(), *GPU, "--fidelity", "auto", mentions=["beside traces", "scene"])
+
     def test_targets_and_windows_that_make_no_sense_are_refused(self):
         for option, value in (("--target-error", "0%"), ("--target-error", "-1%"), ("--target-error", "101%"),
                               ("--target-error", "2"), ("--target-error", "two%"), ("--target-error", "nan%"),

@@ -146,12 +146,6 @@ struct Fields<tracer::RmseRatio> {
 };
 
 template <>
-struct Fields<cachesim::Estimate> {
-    using S = cachesim::Estimate;
-    static constexpr std::tuple all{Field{"mean", &S::mean}, Field{"half_width", &S::half_width}};
-};
-
-template <>
 struct Fields<PairEffect> {
     using S = PairEffect;
     static constexpr std::tuple all{Field{"pair", &S::pair}, Field{"share", &S::share}};

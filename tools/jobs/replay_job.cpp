@@ -47,7 +47,8 @@ ReplayResult run(const ReplayJob& job, const std::vector<cachesim::Gpu>& gpus, O
     say_resumable(job, observer);
     if (job.estimate.windows) {
         Estimated estimated = estimate(job.launches, job.estimate, gpus, job.timed, observer, outputs);
-        return {std::move(estimated.subject), std::move(estimated.result.traffic), std::move(estimated.result.times)};
+        return {std::move(estimated.subject), std::move(estimated.result.traffic), std::move(estimated.result.times),
+                std::move(estimated.cold), std::move(estimated.fidelity)};
     }
     say_costs(job, gpus.size(), observer);
     const Launches launches(job.launches, outputs, observer);

@@ -1,6 +1,7 @@
 // The job "replay": launches through GPUs, counted or in time. raycache replay and compare print reports of its result.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cachesim/report/profiler.hpp"
@@ -23,7 +24,9 @@ struct ReplayResult {
     Subject subject;
     /// One per source and GPU, sources first: what make_report() takes.
     std::vector<cachesim::Series> series;
-    std::vector<cachesim::TimedSeries> times;  ///< in the same order; none unless asked for
+    std::vector<cachesim::TimedSeries> times;          ///< in the same order; none unless asked for
+    std::vector<cachesim::ColdLaunches> cold;          ///< likewise
+    std::optional<cachesim::FidelityChoice> fidelity;  ///< where a pilot was to choose
 };
 
 /// What make_profile() takes.

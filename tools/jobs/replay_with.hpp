@@ -20,20 +20,27 @@ namespace raycache::tools {
 
 /// The share of a kernel's warps that a GPU holds at once: a timed replay has its work with them only when no more
 /// come.
-template <class Series>
-double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Header& header) {
-    if constexpr (!std::is_same_v<Series, cachesim::TimedSeries>) return 0;
+inline double resident_share(const std::vector<cachesim::Gpu>& gpus, const traces::Header& header) {
     double share = 0;
     for (const cachesim::Gpu& gpu : gpus)
         share += std::min(1.0, static_cast<double>(gpu.sms) * gpu.warps_per_sm / header.warps_per_kernel());
     return share / static_cast<double>(gpus.size());
 }
 
+/// What a replay is called, and whether its work comes with the last warps as that of one in time does.
+template <class Series>
+struct ReplayStage {
+    const char* name = "replay";
+    bool timed = std::is_same_v<Series, cachesim::TimedSeries>;
+};
+
 /// Makes a series of every source and GPU, sources first, with replays that make_replay(gpu, regions, sample) makes:
-/// they take push(warp) and end_kernel(), and their finish() is one of Series::launches. Series is an Origin.
+/// they take push(warp) and, where launches have several kernels, end_kernel(), and their finish() is one of
+/// Series::launches. Series is an Origin.
 template <class Series, class MakeReplay>
 std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,
-                                Observer& observer, const MakeReplay& make_replay) {
+                                Observer& observer, const MakeReplay& make_replay,
+                                const ReplayStage<Series>& named = {}) {
     std::vector<Series> series;
     std::vector<std::pair<std::size_t, std::uint32_t>> tasks;  // source, launch
     std::uint64_t warps = 0;
@@ -53,12 +60,12 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
     }
 
     constexpr std::uint64_t parts = 100;  // of a warp's work
-    const Stage stage(observer, "replay", parts * warps, "rays");
+    const Stage stage(observer, named.name, parts * warps, "rays");
     const auto run_task = [&](std::size_t task) {
         const auto [s, launch] = tasks[task];
         const traces::Header& header = *sources[s].header;
         const auto last_parts =
-            static_cast<std::uint64_t>(resident_share<Series>(gpus, header) * static_cast<double>(parts));
+            named.timed ? static_cast<std::uint64_t>(resident_share(gpus, header) * static_cast<double>(parts)) : 0;
         std::vector<decltype(make_replay(gpus[0], header.regions, 0u))> replays;
         for (const cachesim::Gpu& gpu : gpus)
             replays.push_back(make_replay(gpu, header.regions, header.launches[launch]));
@@ -67,7 +74,8 @@ std::vector<Series> replay_with(const std::vector<LaunchSource>& sources, const 
             const auto shared = std::make_shared<const traces::WarpTrace>(std::move(warp));
             const bool new_kernel = shared->warp != 0 && shared->warp % header.warps_per_kernel() == 0;
             for (auto& r : replays) {
-                if (new_kernel) r.end_kernel();
+                if constexpr (requires { r.end_kernel(); })
+                    if (new_kernel) r.end_kernel();
                 r.push(shared);
             }
             stage.add(parts - last_parts, rays);

@@ -24,6 +24,10 @@ public:
         }
         expect(r.times.empty() || r.times.size() == r.series.size(), "as many timed series as counted ones");
         for (const cachesim::TimedSeries& t : r.times) expect(!t.launches.empty(), "launches in every series");
+        expect(r.cold.empty() || r.cold.size() == r.series.size(), "cold launches of every series, or none");
+        for (const cachesim::ColdLaunches& c : r.cold)
+            expect(!c.launches.empty() && (c.stages.empty() || c.stages.size() == c.launches.size()),
+                   "stages of every cold launch, or none");
     }
 
     void operator()(const ExplainResult& r) const {

@@ -86,7 +86,8 @@ struct Fields<cachesim::WindowSample> {
                                     Field{"timed_windows", &S::timed_windows},
                                     Field{"widening", &S::widening},
                                     Field{"unfilled_share", &S::unfilled_share},
-                                    Field{"last_cache_full", &S::last_cache_full}};
+                                    Field{"last_cache_full", &S::last_cache_full},
+                                    Field{"all_indices", &S::all_indices}};
 };
 
 template <>
@@ -161,18 +162,72 @@ struct Fields<cachesim::TimedStatistics> {
 };
 
 template <>
+struct Fields<cachesim::Estimate> {
+    using S = cachesim::Estimate;
+    static constexpr std::tuple all{Field{"mean", &S::mean}, Field{"half_width", &S::half_width}};
+};
+
+template <>
 struct Fields<cachesim::TimedSeries> {
     using S = cachesim::TimedSeries;
     static constexpr std::tuple all = std::tuple_cat(
-        Fields<cachesim::Origin>::all,
-        std::tuple{Field{"no_time", &S::no_time}, Field{"traversal", &S::traversal}, Field{"launches", &S::launches}});
+        Fields<cachesim::Origin>::all, std::tuple{Field{"no_time", &S::no_time}, Field{"traversal", &S::traversal},
+                                                  Field{"launches", &S::launches}, Field{"speed_up", &S::speed_up}});
+};
+
+template <>
+struct Fields<cachesim::LaunchStages::Stage> {
+    using S = cachesim::LaunchStages::Stage;
+    static constexpr std::tuple all{Field{"cycles", &S::cycles}, Field{"warp_accesses", &S::warp_accesses}};
+};
+
+template <>
+struct Fields<cachesim::LaunchStages> {
+    using S = cachesim::LaunchStages;
+    static constexpr std::tuple all{Field{"sample", &S::sample}, Field{"filling", &S::filling}, Field{"full", &S::full},
+                                    Field{"draining", &S::draining}};
+};
+
+template <>
+struct Fields<cachesim::ColdLaunches> {
+    using S = cachesim::ColdLaunches;
+    static constexpr std::tuple all{Field{"launches", &S::launches}, Field{"stages", &S::stages}};
+};
+
+template <>
+struct Fields<cachesim::FidelityChoice::Level> {
+    using S = cachesim::FidelityChoice::Level;
+    static constexpr std::tuple all{Field{"name", &S::name}, Field{"timed_blocks", &S::timed_blocks},
+                                    Field{"blocks", &S::blocks}, Field{"seconds", &S::seconds},
+                                    Field{"suffices", &S::suffices}};
+};
+
+template <>
+struct Fields<cachesim::FidelityChoice::Pilot> {
+    using S = cachesim::FidelityChoice::Pilot;
+    static constexpr std::tuple all{Field{"strategy", &S::strategy}, Field{"gpu", &S::gpu},
+                                    Field{"spp", &S::spp},           Field{"by_work", &S::by_work},
+                                    Field{"by_time", &S::by_time},   Field{"difference", &S::difference}};
+};
+
+template <>
+struct Fields<cachesim::FidelityChoice> {
+    using S = cachesim::FidelityChoice;
+    static constexpr std::tuple all{Field{"picked", &S::picked},
+                                    Field{"reason", &S::reason},
+                                    Field{"target", &S::target},
+                                    Field{"pilot_blocks", &S::pilot_blocks},
+                                    Field{"pilot_seconds", &S::pilot_seconds},
+                                    Field{"levels", &S::levels},
+                                    Field{"pilots", &S::pilots}};
 };
 
 template <>
 struct Fields<ReplayResult> {
     using S = ReplayResult;
     static constexpr std::tuple all{Field{"subject", &S::subject}, Field{"series", &S::series},
-                                    Field{"times", &S::times}};
+                                    Field{"times", &S::times}, Field{"cold", &S::cold},
+                                    Field{"fidelity", &S::fidelity}};
 };
 
 // An explanation.

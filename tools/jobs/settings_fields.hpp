@@ -126,11 +126,22 @@ struct Fields<SamplesJob> {
 };
 
 template <>
+struct EnumNames<Fidelity> {
+    static constexpr std::array all{std::pair{Fidelity::windows, "windows"},
+                                    std::pair{Fidelity::automatic, "auto"}, std::pair{Fidelity::exact, "exact"}};
+};
+
+template <>
 struct Fields<EstimateSettings> {
     using S = EstimateSettings;
-    static constexpr std::tuple all{Field{"windows", &S::windows},         Field{"target_error", &S::target_error},
-                                    Field{"time_budget", &S::time_budget}, Field{"window_count", &S::window_count},
-                                    Field{"baseline", &S::baseline},       Field{"across_gpus", &S::across_gpus}};
+    static constexpr std::tuple all{Field{"windows", &S::windows},
+                                    Field{"target_error", &S::target_error},
+                                    Field{"time_budget", &S::time_budget},
+                                    Field{"window_count", &S::window_count},
+                                    Field{"baseline", &S::baseline},
+                                    Field{"across_gpus", &S::across_gpus},
+                                    Field{"cold_launches", &S::cold_launches},
+                                    Field{"fidelity", &S::fidelity}};
 };
 
 template <>

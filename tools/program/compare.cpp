@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tools/jobs/replay_job.hpp"
+#include "tools/jobs/windows/fidelity.hpp"
 #include "tools/program/commands.hpp"
 #include "tools/program/console.hpp"
 #include "tools/program/equivalent_option.hpp"
@@ -14,6 +15,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/report_options.hpp"
+#include "tools/program/steady_options.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -28,6 +30,7 @@ struct CompareArguments {
     std::vector<std::string> layouts{tracer::default_layout};
     SamplingOptions sampling;
     EstimateOptions estimate;
+    SteadyOptions steady;
     ReportOptions report;
     ThreadOptions threads;
     bool equivalent = false;
@@ -59,6 +62,7 @@ std::vector<CaseSettings> cases_of(const CompareArguments& o) {
 Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) {
     const Inputs inputs = o->inputs.sorted(*command);
     o->scene.source = inputs.scene;
+    o->report.timed = o->steady.in_time(o->report.timed);
     ReplayJob job = o->report.job();
     job.launches.traces = inputs.traces;
     const auto gpus = o->report.load_gpus(inputs.traces);
@@ -72,6 +76,8 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
     job.estimate.baseline = o->report.baseline;
     job.estimate.across_gpus = o->report.across_gpus;
     if (o->equivalent) check_whole_launches(job.estimate);
+    o->steady.apply(job);
+    check_fidelity(job.estimate, gpus, job.timed);
     return [o, command, job, gpus, why_exact] {
         if (job.launches.of_traces())
             for (const std::string& line : idle_on_traces(*command)) warn(line);
@@ -102,6 +108,7 @@ void add_compare(Program& program) {
     o->report.add(*command, true);
     add_cache_equivalent(*command, o->equivalent, {"--counters", "--csv"});
     o->estimate.add(*command, "with --timed: of every speed-up");
+    o->steady.add(*command);
     o->scene.add_view(*command);
     o->sampling.add_launches(*command);
     o->sampling.add_execution(*command);
@@ -131,7 +138,9 @@ void add_compare(Program& program) {
          "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --layout bvh2,cwbvh8 --spp 1024 "
          "--gpu rtx-3070 --timed",
          "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --spp 1024 --gpu rtx-3070 "
-         "--l1-kib 128,256 --across-gpus"});
+         "--l1-kib 128,256 --across-gpus",
+         "raycache compare sponza.glb --spp 1024 --gpu rtx-3070 --fidelity auto --target-error 2%",
+         "raycache compare courtyard --spp 64 --gpu rtx-3070 --timed --cold-launches 1 --resolution 320x180"});
     command->plan([o, command] { return plan(o, command); });
 }
 

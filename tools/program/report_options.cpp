@@ -108,13 +108,14 @@ ReplayJob ReportOptions::job() const {
 
 void ReportOptions::publish(const ReplayResult& result, const std::vector<std::string>& remarks) const {
     if (timed) {
-        auto report =
-            cachesim::make_timed_report(result.times, baseline_of(result.times, baseline, across_gpus), result.series);
+        auto report = cachesim::make_timed_report(result.times, baseline_of(result.times, baseline, across_gpus),
+                                                  result.series, result.cold);
+        report.fidelity = result.fidelity;
         report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
         return print_and_save(report, result.subject, *this);
     }
-    cachesim::Report report =
-        cachesim::make_report(result.series, baseline_of(result.series, baseline, across_gpus), parse_by(by));
+    cachesim::Report report = cachesim::make_report(result.series, baseline_of(result.series, baseline, across_gpus),
+                                                    parse_by(by), result.cold);
     report.notes.insert(report.notes.end(), remarks.begin(), remarks.end());
     print_and_save(report, result.subject, *this);
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/jobs/windows/cold_launches.hpp"
 #include "tools/jobs/windows/estimator.hpp"
+#include "tools/jobs/windows/fidelity.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -37,21 +39,40 @@ void check_windows(const LaunchSettings& launches, const EstimateSettings& setti
         throw UsageError(
             "windows of traces or wavefronts; expected a scene and --execution megakernel: the windows of an estimate "
             "are traced where they are wanted");
+    if (settings.cold_launches > 0) check_cold_launches(strategies_of(launches), settings.cold_launches);
 }
+
+namespace {
+
+Estimated estimate_from_windows(const tracer::PreparedScene& scene, const std::vector<WindowedStrategy>& strategies,
+                                const EstimateSettings& settings, const std::vector<cachesim::Gpu>& gpus, bool timed,
+                                Observer& observer, Estimator::Clock::time_point start) {
+    Estimator estimator(scene, strategies, settings, gpus, std::vector<cachesim::Idealised>(timed ? 1 : 0), false,
+                        observer);
+    estimator.run(settings.baseline, start);
+    Estimated out;
+    out.subject.traces = estimator.subject();
+    out.result = estimator.result();
+    return out;
+}
+
+}  // namespace
 
 Estimated estimate(const LaunchSettings& launches, const EstimateSettings& settings,
                    const std::vector<cachesim::Gpu>& gpus, bool timed, Observer& observer, const FileNames& outputs) {
     check_windows(launches, settings);
+    check_fidelity(settings, gpus, timed);
     const auto start = Estimator::Clock::now();
     warn_of_strategies(launches.captures(), observer);
     const auto scene = launches.scene.prepare(outputs, observer);
-    Estimator estimator(*scene, strategies_of(launches), settings, gpus,
-                        std::vector<cachesim::Idealised>(timed ? 1 : 0), false, observer);
-    estimator.run(settings.baseline, start);
-    Estimated out;
+    const std::vector<WindowedStrategy> strategies = strategies_of(launches);
+    if (settings.cold_launches > 0) expect_cold_launches(strategies, settings.cold_launches, gpus, timed, observer);
+    Estimated out = settings.fidelity == Fidelity::windows
+                        ? estimate_from_windows(*scene, strategies, settings, gpus, timed, observer, start)
+                        : estimate_at_fidelity(*scene, strategies, settings, gpus, observer);
     for (const cachesim::Gpu& gpu : gpus) out.subject.gpus.push_back(gpu_json(gpu));
-    out.subject.traces = estimator.subject();
-    out.result = estimator.result();
+    if (settings.cold_launches > 0)
+        out.cold = replay_cold_launches(*scene, strategies, settings.cold_launches, gpus, timed, observer);
     return out;
 }
 

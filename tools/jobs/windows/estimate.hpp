@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@ namespace raycache::tools {
 /// Of a strategy.
 inline constexpr std::uint32_t most_blocks = 512;
 
+/// Which level of accuracy predicts speed-ups.
+enum class Fidelity {
+    windows,    ///< windows, functional or in time
+    automatic,  ///< the cheapest that reaches target_error: fidelity.hpp
+    exact,      ///< all of the picture in the steady state: steady_replay.hpp
+};
+
 struct EstimateSettings {
     bool windows = false;  ///< else whole launches, each from cold caches
     /// Half width of the 95 % interval of each ratio to the baseline (of each mean where nothing is compared), over
@@ -24,6 +32,9 @@ struct EstimateSettings {
     std::uint64_t window_count = 0;  ///< windows of each strategy, whatever the error; 0: by the two above
     std::string baseline;            ///< what target_error is about; empty: cranley-patterson where it is compared
     bool across_gpus = false;        ///< ratios of all variants of a GPU to the baseline on the first
+    /// So many whole launches of each strategy besides, of the same sample indices, each from cold caches.
+    std::uint64_t cold_launches = 0;
+    Fidelity fidelity = Fidelity::windows;  ///< others only in time
 
     /// Throws UsageError for values out of range.
     void check() const;
@@ -32,6 +43,8 @@ struct EstimateSettings {
 struct Estimated {
     Subject subject;
     Predicted result;  ///< times: only if asked for
+    std::optional<cachesim::FidelityChoice> fidelity;
+    std::vector<cachesim::ColdLaunches> cold;  ///< of each series; none unless asked for
 };
 
 /// Throws UsageError for traces, wavefronts and settings that make no sense.

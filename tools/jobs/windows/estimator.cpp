@@ -55,8 +55,7 @@ void Estimator::warn_of_pictures() const {
     }
 }
 
-/// That these blocks are to come.
-void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
+double Estimator::block_cost() const {
     double paths = sizes_.work_groups * sizes_.work_warps, longest = 0, replayed = 0, timed = 0;
     for (const cachesim::Gpu& gpu : gpus_) {
         const double wave = wave_warps(gpu), windows = (sizes_.warm_up_waves + sizes_.counted_waves) * wave;
@@ -68,10 +67,20 @@ void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
         timed += static_cast<double>(ideals_.size()) *
                  (1 + sizes_.timed_windows * (sizes_.timed_warm_up_waves + sizes_.counted_waves)) * wave;
     }
-    const double count = traces::warp_lanes * (end - begin) * static_cast<double>(cases_.size());
+    const double count = traces::warp_lanes * static_cast<double>(cases_.size());
     const std::uint32_t bounces = cases_.front().capture->settings().paths.bounces;
+    return window_cost(bounces, (paths + longest) * count, replayed * count, timed * count);
+}
+
+double Estimator::work_cost() const {
+    const double paths =
+        traces::warp_lanes * sizes_.work_groups * sizes_.work_warps * static_cast<double>(cases_.size());
+    return window_cost(cases_.front().capture->settings().paths.bounces, paths, 0, 0);
+}
+
+void Estimator::expect(std::uint32_t begin, std::uint32_t end) {
     observer_.expect(stage_name(end), ideals_.empty() ? Work::replay : Work::timed_replay,
-                     window_cost(bounces, (paths + longest) * count, replayed * count, timed * count));
+                     (end - begin) * block_cost());
 }
 
 void Estimator::run_blocks(std::uint32_t end) {

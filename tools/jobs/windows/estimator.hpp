@@ -47,6 +47,13 @@ public:
     /// Replays until there are `end` blocks, more than before, and tells how certain that is. Look number k, from 1,
     /// may err in a share 0.05 / 2^k of all cases, so that all of them together err in less than 0.05: the union bound.
     Worst look(std::uint32_t end, const std::string& baseline);
+    /// Where a picture is smaller than what a GPU holds at once.
+    void warn_of_pictures() const;
+    /// Tells the observer that these blocks are to come.
+    void expect(std::uint32_t begin, std::uint32_t end);
+    /// Modelled seconds of CPU of one block of all strategies: of everything, and of tracing its work alone.
+    double block_cost() const;
+    double work_cost() const;
 
     const std::vector<Case>& cases() const { return cases_; }
     /// In the order of cases, then GPUs; times of the first of the ideals.
@@ -57,8 +64,6 @@ public:
     std::vector<Json> subject() const;
 
 private:
-    void warn_of_pictures() const;
-    void expect(std::uint32_t begin, std::uint32_t end);
     void expect_further(std::uint32_t end, double error);
     void run_blocks(std::uint32_t end);
     std::string how_far() const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "tools/jobs/windows/window_plan.hpp"
@@ -39,8 +40,11 @@ private:
     std::uint32_t first_launch_, launches_, warps_;
 };
 
-/// Counts the work of a block at the places of its plan. Returns the warps that it traced. The last group of a picture
-/// may be shorter, so that every warp is in one group.
+/// Traces the places of a block's plan where work is counted, and shows each warp to `use`. Returns how many. The last
+/// group of a picture may be shorter, so that every warp is in one group.
+std::uint64_t trace_work(WarpStream&, const BlockPlan&, const WindowSizes&,
+                         const std::function<void(const traces::WarpTrace&)>& use);
+/// Counts the work there.
 std::uint64_t count_work(WarpStream&, const BlockPlan&, const WindowSizes&, WorkCount&);
 
 }  // namespace raycache::tools

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "cachesim/analysis/explainer.hpp"
 #include "cachesim/replay/replay.hpp"
 #include "cachesim/replay/timed/timed_replay.hpp"
+#include "tools/jobs/windows/issue_work.hpp"
 #include "tools/jobs/windows/scaled_findings.hpp"
 #include "tools/jobs/windows/warp_stream.hpp"
 #include "tools/jobs/windows/windowed_replay.hpp"
@@ -178,7 +180,14 @@ std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint3
     for (const cachesim::Gpu& gpu : gpus)
         if (gpu.simd_width != traces::warp_lanes) widths.push_back(gpu.simd_width);
     WorkCount work(regions, widths);
-    const std::uint64_t traced = count_work(stream, plan, sizes, work);
+    std::vector<std::optional<IssueWork>> issued(gpus.size());
+    for (std::size_t g = 0; g < gpus.size(); ++g)
+        if (gpus[g].timing) issued[g].emplace(gpus[g], regions);
+    const std::uint64_t traced = trace_work(stream, plan, sizes, [&](const traces::WarpTrace& warp) {
+        work.add(warp);
+        for (auto& of_gpu : issued)
+            if (of_gpu) of_gpu->add(warp);
+    });
 
     std::vector<GpuWindows> replays;
     replays.reserve(gpus.size());
@@ -192,9 +201,25 @@ std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint3
         BlockResult& result = results.emplace_back(replays[g].finish());
         result.counts.groups = work.launch(replay_sm(stream, plan, gpus[g], regions), result.counts, gpus[g], scale);
         for (cachesim::TimedStatistics& times : result.times) work.scale(times, scale);
+        if (issued[g]) result.issue_cycles = issued[g]->cycles() * scale;
         if (wanted.depth) result.findings = scaled_findings(result.findings, result.counts);
     }
     return results;
+}
+
+std::vector<double> count_issue_cycles(const tracer::Capture& capture, std::uint32_t first_launch,
+                                       const WindowPlan& windows, const BlockPlan& plan, const WindowSizes& sizes,
+                                       const std::vector<cachesim::Gpu>& gpus) {
+    WarpStream stream(capture, first_launch, windows.launches());
+    std::vector<IssueWork> issued;
+    for (const cachesim::Gpu& gpu : gpus) issued.emplace_back(gpu, capture.header().regions);
+    const std::uint64_t traced = trace_work(stream, plan, sizes, [&](const traces::WarpTrace& warp) {
+        for (IssueWork& of_gpu : issued) of_gpu.add(warp);
+    });
+    std::vector<double> cycles;
+    for (const IssueWork& of_gpu : issued)
+        cycles.push_back(of_gpu.cycles() * static_cast<double>(stream.warps()) / static_cast<double>(traced));
+    return cycles;
 }
 
 }  // namespace raycache::tools

@@ -34,6 +34,7 @@ struct WindowReplays {
 struct BlockResult {
     cachesim::LaunchStatistics counts;
     std::vector<cachesim::TimedStatistics> times;  ///< of WindowReplays::timed
+    double issue_cycles = 0;                       ///< IssueWork of the launch; of GPUs with a timing
     cachesim::Findings findings;                   ///< scaled as the counts are; empty unless asked for
     /// Of the last cache's misses, those that took a way that held nothing, after the filling. Above
     /// WindowSizes::unfilled_share the scene fits in it, and what DRAM serves in the steady state is not known.
@@ -45,6 +46,10 @@ struct BlockResult {
 std::vector<BlockResult> replay_block(const tracer::Capture&, std::uint32_t first_launch, const WindowPlan&,
                                       const BlockPlan&, const WindowSizes&, const std::vector<cachesim::Gpu>&,
                                       const WindowReplays&);
+
+/// The same of IssueWork alone: BlockResult::issue_cycles by GPU, from tracing. All GPUs must have a timing.
+std::vector<double> count_issue_cycles(const tracer::Capture&, std::uint32_t first_launch, const WindowPlan&,
+                                       const BlockPlan&, const WindowSizes&, const std::vector<cachesim::Gpu>&);
 
 /// Warps that a GPU holds at once.
 std::uint32_t wave_warps(const cachesim::Gpu&);

@@ -2,17 +2,9 @@
 
 #include <set>
 
-#include "tracer/sampling/pixel_place.hpp"
-#include "tracer/simt/thread_map.hpp"
+#include "tools/jobs/windows/launch_extent.hpp"
 
 namespace raycache::tools {
-namespace {
-
-tracer::LaunchGrid grid_of(const tracer::CaptureSettings& s) {
-    return {s.thread_map, s.width, s.height, s.strategy.samples.spp, tracer::interleave_of(s.strategy.parameters)};
-}
-
-}  // namespace
 
 std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
     std::vector<WindowedStrategy> all;
@@ -26,7 +18,7 @@ std::vector<WindowedStrategy> strategies_of(const LaunchSettings& launches) {
 WindowedCase make_case(const tracer::PreparedScene& scene, const WindowedStrategy& strategy, const WindowSizes& sizes,
                        std::uint64_t drawing, std::uint32_t blocks) {
     tracer::CaptureSettings settings = strategy.capture;
-    const tracer::LaunchGrid grid = grid_of(settings);
+    const tracer::LaunchGrid grid = launch_grid_of(settings);
     const tracer::SampleSet& samples = settings.strategy.samples;
     constexpr std::uint64_t golden = 0x9e3779b97f4a7c15;  // bits of drawings that follow each other differ widely
     const std::uint64_t seed = samples.seed ^ drawing * golden;
