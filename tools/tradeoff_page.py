@@ -101,7 +101,7 @@ def duration(s):
 
 
 OPTIONS = {"unique sectors": "no option", "reuse distances": "no option", "functional windows": "`--target-error {}`",
-           "functional exact": "none", "timed windows": "`--timed --target-error {}`", "timed exact": "none"}
+           "functional exact": "none", "timed windows": "`--timed --target-error {}`", "timed exact": "`--fidelity exact`"}
 
 
 def option(rung):

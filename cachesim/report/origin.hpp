@@ -30,7 +30,7 @@ struct WindowSample {
     /// Of the last cache's misses, those that took a way that held nothing, on average over the blocks.
     double unfilled_share = 0;
     bool last_cache_full = true;  ///< in every block
-    /// All N sample indices, launch after launch, are the one block: nothing was drawn, and there are no intervals.
+    /// All N sample indices, launch after launch, are the one block: nothing was drawn, and every interval is nothing.
     bool all_indices = false;
 };
 
