@@ -8,6 +8,7 @@ from support import LAUNCHES, PICTURE, SCENE, ProgramTest, main
 GPU = ["--gpu", "rtx-3070", "--set", "sms=2"]
 STRATEGIES = ["--strategy", "cranley-patterson,micro-jitter", "--k", "1"]
 COMPARE = ["compare", *SCENE, *PICTURE, "--spp", "1024", *STRATEGIES, *GPU]
+SHORT = [*COMPARE, "--bounces", "1"]  # paths
 
 
 class Estimates(ProgramTest):
@@ -93,10 +94,9 @@ class Estimates(ProgramTest):
         self.assertIn("whole launches are replayed", result.stderr)
 
     def test_cold_launches_stand_beside_the_steady_state(self):
-        timed = [*COMPARE, "--timed", "--windows", "4", "--cold-launches", "2"]
+        timed = [*SHORT, "--timed", "--windows", "4", "--cold-launches", "2"]
         result = self.succeeds(*timed, "--json")
-        whole = self.succeeds("compare", *SCENE, *PICTURE, "--spp", "1024", *STRATEGIES, *GPU, "--timed",
-                              "--trace-samples", "2", "--json").json["rows"]
+        whole = self.succeeds(*SHORT, "--timed", "--trace-samples", "2", "--json").json["rows"]
         for row, launches in zip(result.json["rows"], whole):
             cold = row["cold_launches"]
             self.assertEqual((cold["cycles"], cold["samples"]), (launches["cycles"], launches["samples"]))
@@ -111,7 +111,7 @@ class Estimates(ProgramTest):
         self.assertIn("cold_over_steady", self.succeeds(*timed, "--csv").text)
 
     def test_cold_launches_without_time_compare_bytes(self):
-        rows = self.succeeds(*COMPARE, "--windows", "4", "--cold-launches", "1", "--json").json["rows"]
+        rows = self.succeeds(*SHORT, "--windows", "4", "--cold-launches", "1", "--json").json["rows"]
         for row in rows:
             self.assertNotIn("cycles", row["cold_launches"])
             self.assertGreater(row["cold_launches"]["l2_bytes_over_steady"]["mean"], 0)
@@ -128,7 +128,7 @@ class Estimates(ProgramTest):
         self.refuses(2, "compare", self.capture(), *GPU, "--cold-launches", "1", mentions=["beside traces", "scene"])
 
     def test_a_pilot_picks_a_level_and_says_why(self):
-        auto = [*COMPARE, "--fidelity", "auto", "--target-error", "50%"]
+        auto = [*SHORT, "--fidelity", "auto", "--target-error", "50%"]
         one, two = (self.succeeds(*auto, "--json", "--threads", n) for n in (1, 2))
         self.assertEqual(one.report, two.report)
         choice, row = one.json["fidelity"], one.json["rows"][1]
@@ -153,8 +153,8 @@ class Estimates(ProgramTest):
 
     def test_the_other_levels_are_the_options_that_they_stand_for(self):
         for level, option in (("functional", []), ("timed", ["--timed"])):
-            asked = self.succeeds(*COMPARE, "--windows", "4", "--fidelity", level, "--json").json
-            self.assertEqual(asked["rows"], self.succeeds(*COMPARE, "--windows", "4", *option, "--json").json["rows"])
+            asked = self.succeeds(*SHORT, "--windows", "4", "--fidelity", level, "--json").json
+            self.assertEqual(asked["rows"], self.succeeds(*SHORT, "--windows", "4", *option, "--json").json["rows"])
 
     def test_levels_that_make_no_sense_are_refused(self):
         self.refuses(2, *COMPARE, "--fidelity", "best", mentions=["--fidelity", "best", "functional"])
