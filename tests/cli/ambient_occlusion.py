@@ -64,11 +64,11 @@ class AmbientOcclusion(ProgramTest):
                              "--strategy", "cranley-patterson,coherent", *GPU, "--json").json["rows"]
         self.assertEqual({row["strategy"] for row in rows}, {"cranley-patterson", "coherent"})
 
-    def test_a_picture_is_grey_and_darker_with_a_larger_radius(self):
+    def test_a_picture_depends_on_the_radius(self):
         for integrator in ("ao", "ssao"):
             for radius in ("0.1", "1"):
                 self.succeeds("render", *SCENE, *PICTURE, "--spp", "4", "--integrator", integrator, "--radius", radius,
-                              "--exposure", "0", "-o", f"{integrator}-{radius}.hdr")
+                              "-o", f"{integrator}-{radius}.hdr")
             self.assertNotEqual(self.path(f"{integrator}-0.1.hdr").read_bytes(), self.path(f"{integrator}-1.hdr").read_bytes())
 
     def test_extremes_are_pictures_too(self):
