@@ -309,7 +309,8 @@ dram_gb_s = 256
     CHECK_THAT(message("l2_latency = 200", "l2_latency = 20"), Contains("timing.l2_latency") && Contains("20"));
     CHECK_THAT(message("dram_latency = 500", "dram_latency = -5"), Contains("timing.dram_latency") && Contains("-5"));
     CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = 0"), Contains("timing.dram_gb_s") && Contains("positive"));
-    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = \"fast\""), Contains("timing.dram_gb_s") && Contains("\"fast\""));
+    CHECK_THAT(message("dram_gb_s = 256", "dram_gb_s = \"fast\""),
+               Contains("timing.dram_gb_s") && Contains("\"fast\""));
     CHECK_THAT(message("schedulers = 4", "schedulers = 0"), Contains("timing.schedulers"));
     CHECK_THAT(message("schedulers = 4", ""), Contains("timing.schedulers") && Contains("add it"));
     CHECK_THAT(message("schedulers = 4", "sheduler = 4"), Contains("timing.sheduler") && Contains("unknown"));

@@ -127,8 +127,8 @@ struct Fields<SamplesJob> {
 
 template <>
 struct EnumNames<Fidelity> {
-    static constexpr std::array all{std::pair{Fidelity::windows, "windows"},
-                                    std::pair{Fidelity::automatic, "auto"}, std::pair{Fidelity::exact, "exact"}};
+    static constexpr std::array all{std::pair{Fidelity::windows, "windows"}, std::pair{Fidelity::automatic, "auto"},
+                                    std::pair{Fidelity::exact, "exact"}};
 };
 
 template <>
