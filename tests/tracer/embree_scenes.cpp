@@ -44,7 +44,7 @@ void compare_on(Scene scene, const BvhSettings& settings, std::size_t million) {
     const EmbreeScene embree(prepared.scene());
     const std::size_t from_paths = million * 6 / 10, others = million / 10;
     RayCollector collector(prepared);
-    trace_pictures(prepared, collector, 256, PathSettings{.bounces = 4, .russian_roulette = false, .parameters = {}},
+    trace_pictures(prepared, collector, 256, PathSettings{.bounces = 4, .russian_roulette = false},
                    [&] { return collector.closest_rays.size() + collector.shadow_rays.size() < from_paths; });
     const Box box = widened(prepared.scene().bounds());
 

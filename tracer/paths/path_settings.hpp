@@ -33,7 +33,7 @@ struct PathSettings {
     std::uint32_t bounces_diffuse = max_bounces, bounces_transmission = max_bounces;
     LightSampling lights = LightSampling::automatic;
     std::string integrator = default_integrator;  ///< a name of integrators()
-    Parameters parameters;                        ///< of the integrator: what its entry states
+    Parameters parameters{};                      ///< of the integrator: what its entry states
 };
 
 /// Throws UsageError for more than `max_bounces` of any kind, for an unknown integrator, and for parameters that none

@@ -45,8 +45,8 @@ Number read_in_range(const ParameterEntry& entry, const std::string& text) {
 
 std::vector<std::string> ParameterEntry::choice_names() const {
     std::vector<std::string> names;
-    for (const char* name : choices)
-        if (name != nullptr) names.emplace_back(name);
+    for (const char* choice : choices)
+        if (choice != nullptr) names.emplace_back(choice);
     return names;
 }
 
