@@ -114,7 +114,7 @@ def contents(comparison, quality, picture, command):
         "scenes": ", ".join(distinct(r["scene"] for r in comparison.rows)),
         "sequences": ", ".join(distinct(r["sequence"] for r in comparison.rows)),
         "samples": len(comparison.rows[0]["samples"]), "windows": comparison.rows[0].get("windows"), "timed": comparison.timed, "grouped": comparison.grouped,
-        "compares": compares, "baseline": comparison.baseline, "notes": comparison.notes, "command": command,
+        "compares": compares, "baseline": comparison.baseline_name, "notes": comparison.notes, "command": command,
         "best": best_of(comparison, quality) if compares else None, "verdicts": verdicts(comparison) if compares else [],
         "columns": [{"lines": figure["title"].split(" ", 1), "words": figure["definition"]} for figure in columns],
         "tables": [table(comparison, columns, s) for s in comparison.settings],

@@ -73,6 +73,7 @@ class Comparison:
             raise BadInput("rows without traffic")
         self.baseline = report["baseline"]
         self.baseline_gpu = report.get("baseline_gpu")  # None: each row's own
+        self.baseline_name = f"{self.baseline} on {self.baseline_gpu}" if self.baseline_gpu else self.baseline
         self.notes = report["notes"]
         self.command = report.get("settings") or {}
         self.grouped = report.get("by", "none") != "none"

@@ -42,6 +42,10 @@ class ReportPage(ProgramTest):
             other["speed_up"] = other["traffic"]["l2_bytes_ratio"] = estimate(1, 0.1)
         self.assertTrue(self.lead(self.page(report)).startswith("No strategy gains anything over cranley-patterson for certain."))
 
+    def test_a_baseline_on_one_gpu_is_named_with_it(self):
+        report = self.succeeds(*COMPARE, "--set", "l1.ways=24,48", "--across-gpus", "--json").json
+        self.assertIn(f"Each against cranley-patterson on {report['baseline_gpu']}.", html.unescape(self.page(report)))
+
     def test_the_price_is_that_of_the_same_strategy_and_settings(self):
         report = self.succeeds(*COMPARE, "--json").json
         row = next(row for row in report["rows"] if row["strategy"] == "micro-jitter")
