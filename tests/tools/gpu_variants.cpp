@@ -108,7 +108,8 @@ TEST_CASE("options make variants where a command takes several GPUs, and are ref
           "export a.rct --format csv --sm 0 -o - --gpu h100 --l2-kib 2560,5120"})
         CHECK_THAT(refusal(words_of(std::string("raycache ") + line)), Contains("takes one GPU"));
     CHECK_THAT(refusal(words_of("raycache replay x.rct --gpu h100 --gpu H100")), Contains("twice"));
-    CHECK_THAT(refusal(words_of("raycache replay x.rct --gpu h100 --set l1.wyas=4")), Contains("did you mean 'ways'?"));
+    CHECK_THAT(refusal(words_of("raycache replay x.rct --gpu h100 --set l1.wyas=4")),
+               Contains("did you mean 'l1.ways'?"));
     CHECK_THAT(refusal(words_of("raycache replay x.rct --gpu h100 --l1-kib 0")), Contains("--l1-kib"));
 }
 
