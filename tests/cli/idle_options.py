@@ -102,6 +102,10 @@ class IdleOptions(ProgramTest):
         self.assertEqual(self.warned(*picture, "p.exr"), {"--exposure"})
         self.assertEqual(self.warned(*picture, "p.png"), set())
 
+    def test_a_target_beside_exact_replay_is_warned_of(self):
+        exact = ["compare", *SMALL, *GPU, "--spp", "8", "--strategy", "coherent,random", "--fidelity", "exact"]
+        self.assertEqual(self.warned(*exact, "--baseline", "random", "--target-error", "5%"), {"--target-error"})
+
     def test_options_of_another_export_are_refused(self):
         self.succeeds("capture", *SMALL, "--spp", "64", "--trace-samples", "1", "-o", "t.rct")
         for option in ("--warps-per-cta", "--binary-version"):

@@ -86,6 +86,8 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
         const FileNames outputs = o->report.outputs();
         check_outputs(outputs, warn);
         if (!why_exact.empty()) warn(why_exact);
+        if (job.estimate.fidelity == Fidelity::exact && command->find_option("--target-error")->given())
+            warn("--target-error has no effect: --fidelity exact replays all of the picture");
         const auto limit = o->threads.apply();
         Progress progress("compare");
         std::vector<std::string> remarks;
