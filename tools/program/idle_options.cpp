@@ -231,8 +231,16 @@ std::vector<std::string> idle_options(const Command& command, std::span<const tr
     if (const Option* given = command.find_option("--param"))
         for (const std::string& word : given->words()) {
             const std::string name = word.substr(0, word.find('='));
-            if (context.given(("--" + name).c_str()))
-                lines.push_back(fmt::format("--{} has no effect: --param {} takes its place", name, word));
+            const std::string option = "--" + name, parameter = "--param " + word;
+            if (context.given(option.c_str())) {
+                // One value rules over an option of one value; a list of cases rules over both.
+                const std::string value = word.substr(std::min(word.size(), name.size() + 1));
+                const bool rules = std::all_of(cases.begin(), cases.end(), [&](const Case& c) {
+                    return c.strategy.parameters.text(name) == value;
+                });
+                lines.push_back(fmt::format("{} has no effect: {} takes its place", rules ? option : parameter,
+                                            rules ? parameter : option));
+            }
             add("--param " + name,
                 name == tracer::interleave_parameter.name ? Rule(interleave_rule) : parameter_rule(name));
         }
