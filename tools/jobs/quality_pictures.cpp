@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "tools/jobs/colour_scale.hpp"
 #include "tools/jobs/exposure.hpp"
@@ -254,9 +255,11 @@ std::vector<std::string> quality_picture_names(const std::string& folder,
     std::vector<std::string> names{(path / "index.png").string(), (path / "reference.png").string()};
     std::vector<QualityRow> rows(cases.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].settings = cases[i];
+    std::set<std::string> named;  // a case that is listed twice has one picture
     for (const QualityRow& row : rows)
-        for (const char* end : {".exr", ".png", "_error.exr", "_error.png", "_blocks.exr"})
-            names.push_back((path / file_name(label(row, rows))).string() + end);
+        if (const std::string stem = (path / file_name(label(row, rows))).string(); named.insert(stem).second)
+            for (const char* end : {".exr", ".png", "_error.exr", "_error.png", "_blocks.exr"})
+                names.push_back(stem + end);
     return names;
 }
 
