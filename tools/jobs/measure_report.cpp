@@ -24,7 +24,7 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
 
 std::vector<double> ones(std::size_t count) { return std::vector<double>(count, 1.0); }
 
-const MeasuredWalk* baseline_of(const MeasureResult& result, const MeasuredWalk& walk) {
+const MeasuredWalk* baseline_walk_of(const MeasureResult& result, const MeasuredWalk& walk) {
     for (const MeasuredWalk& other : result.walks)
         if (!other.control && other.strategy == result.baseline && other.spp == walk.spp &&
             other.sequence == walk.sequence && other.mode == walk.mode && other.order == walk.order &&
@@ -42,7 +42,7 @@ MeasureRow row_of(const MeasureResult& result, const MeasuredWalk& walk) {
                    {}};
     for (const std::vector<double>& counter : walk.counters)
         row.counters.push_back(ratio_of_totals({counter, walk.rays}));
-    if (const MeasuredWalk* base = baseline_of(result, walk)) {
+    if (const MeasuredWalk* base = baseline_walk_of(result, walk)) {
         row.speed_up = ratio_to_baseline({base->seconds, base->rays}, {walk.seconds, walk.rays});
         const std::vector<double> each = ones(walk.seconds.size());
         row.speed_up_per_index = ratio_to_baseline({base->seconds, each}, {walk.seconds, each});
