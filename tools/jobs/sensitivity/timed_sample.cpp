@@ -21,11 +21,11 @@ WindowedReplay<cachesim::TimedReplay> make_replay(const cachesim::Gpu& gpu, cons
 }
 
 /// Warps before and behind the place of a window.
-struct Extent {
+struct WindowExtent {
     std::int64_t first, end;
 };
 
-Extent extent_of(const cachesim::Gpu& gpu, const WindowSizes& sizes) {
+WindowExtent window_extent(const cachesim::Gpu& gpu, const WindowSizes& sizes) {
     const double wave = wave_warps(gpu);
     return {-std::max(1LL, std::llround(sizes.timed_warm_up_waves * wave)),
             std::max(1LL, std::llround(sizes.counted_waves * wave))};
@@ -34,7 +34,7 @@ Extent extent_of(const cachesim::Gpu& gpu, const WindowSizes& sizes) {
 }  // namespace
 
 std::uint64_t TimedSample::warps_of(const ModelledGpu& model, const WindowSizes& sizes) {
-    const Extent extent = extent_of(model.gpu, sizes);
+    const WindowExtent extent = window_extent(model.gpu, sizes);
     return wave_warps(model.gpu) + static_cast<std::uint64_t>(extent.end - extent.first) * sizes.timed_windows +
            model.gpu.warps_per_cta;
 }
@@ -51,7 +51,7 @@ void TimedSample::for_each_warp(const ModelledGpu& model, const Use& use) const 
     };
     const auto wave = static_cast<std::int64_t>(wave_warps(model.gpu));
     for (std::int64_t i = 0; i < wave; ++i) use(true, 0u, i, number(plan_.fills.front(), i));
-    const Extent extent = extent_of(model.gpu, sizes_);
+    const WindowExtent extent = window_extent(model.gpu, sizes_);
     for (std::uint32_t w = 0; w < sizes_.timed_windows; ++w) {
         const std::int64_t end = extent.end + (w + 1 == sizes_.timed_windows ? of_cta : 0);
         for (std::int64_t i = extent.first; i < end; ++i) use(false, w, i, number(plan_.windows[w], i));
