@@ -55,7 +55,8 @@ Sample pages() {
     return sample;
 }
 
-/// Loads of which the second and the third wait for the first, and the warp's end for the third; and a warp without any.
+/// Loads of which the second and the third wait for the first, and the warp's end for the third; and a warp without
+/// any.
 Sample issue() {
     Sample sample;
     sample.header.provenance.program = "issue";

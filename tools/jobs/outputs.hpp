@@ -23,8 +23,8 @@ void refuse_same_outputs(const FileNames& outputs);
 void refuse_stdout(const char* option, const std::string& path);
 
 /// Before the work: refuse_same_outputs(), throws Error if one of the outputs cannot be written (a folder that is
-/// missing or read-only, a named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a process; named pipes stay
-/// open to its end.
+/// missing or read-only, a named pipe that nobody reads, a closed stdout), and calls warn_of_unfinished(). Once a
+/// process; named pipes stay open to its end.
 void check_outputs(const FileNames& outputs, const Say& warn);
 
 /// Warns of files of that name that a killed run left unfinished.

@@ -31,12 +31,12 @@ struct Context {
 /// Why a case does not read the option; empty where it does.
 using Rule = std::function<std::string(const Case&, const Context&)>;
 
-/// "A, B do": of the decorrelations.
-template <class Reads>
-std::string readers_of(const Reads& reads) {
+/// "A, B do": of the decorrelations, or of the integrators.
+template <class Entries, class Reads>
+std::string readers_of(const Entries& entries, const Reads& reads) {
     std::string names;
     std::size_t count = 0;
-    for (const auto& entry : tracer::decorrelations()) {
+    for (const auto& entry : entries) {
         if (!reads(entry)) continue;
         names += (names.empty() ? "" : ", ") + entry.name;
         ++count;
@@ -63,8 +63,9 @@ std::string unread(const std::string& name, const Case& c) {
     if (entry.reads_parameter(name, given)) return {};
     const std::string beside = shadowing_option(entry, name, given);
     if (!beside.empty()) return fmt::format("{} is given, which takes its place", beside);
-    return fmt::format("{} does not read it ({})", entry.name,
-                       readers_of([&](const auto& other) { return other.has_parameter(name); }));
+    return fmt::format(
+        "{} does not read it ({})", entry.name,
+        readers_of(tracer::decorrelations(), [&](const auto& other) { return other.has_parameter(name); }));
 }
 
 Rule parameter_rule(const std::string& name) {
@@ -75,7 +76,7 @@ std::string sequence_rule(const Case& c, const Context&) {
     const auto& entry = tracer::find_decorrelation(c.strategy.decorrelation);
     if (entry.reads_sequence) return {};
     return fmt::format("{} does not read it ({})", entry.name,
-                       readers_of([](const auto& other) { return other.reads_sequence; }));
+                       readers_of(tracer::decorrelations(), [](const auto& other) { return other.reads_sequence; }));
 }
 
 std::string seed_rule(const Case& c, const Context& context) {
@@ -119,11 +120,7 @@ template <class Reads>
 std::string unread_by_integrator(const Case& c, const Reads& reads) {
     const tracer::IntegratorEntry& own = tracer::integrator_entry(c.paths.integrator);
     if (reads(own)) return {};
-    std::string names;
-    std::size_t count = 0;
-    for (const tracer::IntegratorEntry& entry : tracer::integrators())
-        if (reads(entry)) names += (count++ == 0 ? "" : ", ") + entry.name;
-    return fmt::format("integrator {} does not read it ({} do{})", own.name, names, count == 1 ? "es" : "");
+    return fmt::format("integrator {} does not read it ({})", own.name, readers_of(tracer::integrators(), reads));
 }
 
 std::string light_rule(const Case& c, const Context&) {

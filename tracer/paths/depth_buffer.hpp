@@ -1,9 +1,10 @@
-// What a rasteriser leaves of a picture for passes over it: for each pixel how far away the surface at its centre is, and
-// where it faces.
+// What a rasteriser leaves of a picture for passes over it: for each pixel how far away the surface at its centre is,
+// and where it faces.
 //
 // A depth z, along the view, is stored as near / z, near being the least depth of the picture: 1 is nearest, 0 is the
 // sky ("reversed" depth, whose numbers lie evenly in 1 / z as perspective does). In 4 bytes a float, in 2 a half; a
-// surface is never rounded to the sky. Normals are those of the triangles, in the camera's frame, 4 bytes (pack_unit()).
+// surface is never rounded to the sky. Normals are those of the triangles, in the camera's frame, 4 bytes
+// (pack_unit()).
 #pragma once
 
 #include <cstdint>

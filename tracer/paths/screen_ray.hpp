@@ -2,13 +2,13 @@
 //
 // The ray goes from P, the point of the pixel's centre, to Q = P + radius * d in the camera's frame, no nearer to the
 // camera than the least depth of the picture. On the screen it is a straight line, along which 1 / z is linear (M.
-// McGuire, M. Mara, "Efficient GPU screen-space ray tracing", JCGT 2014). Step i of n stands at the share (i + offset) / n
-// of that line, in the pixel into which it falls; the pixel's centre at its stored depth is the point D. D blocks the ray
-// if
+// McGuire, M. Mara, "Efficient GPU screen-space ray tracing", JCGT 2014). Step i of n stands at the share
+// (i + offset) / n of that line, in the pixel into which it falls; the pixel's centre at its stored depth is the point
+// D. D blocks the ray if
 //   * the ray is there behind it, by `thickness` at most:  0 < z(ray) - z(D) <= thickness
 //     (the surface is taken to be that thick: what lies behind it no depth buffer knows), and
-//   * it lies above the plane of P's surface, dot(D - P, n) > 0, by more than storing and arithmetic may be wrong: a flat
-//     surface never blocks itself, at whatever angle it is seen.
+//   * it lies above the plane of P's surface, dot(D - P, n) > 0, by more than storing and arithmetic may be wrong: a
+//     flat surface never blocks itself, at whatever angle it is seen.
 // Outside the picture nothing blocks.
 #pragma once
 
@@ -63,7 +63,8 @@ public:
         return true;
     }
 
-    /// Whether the surface of that pixel, the last that step() gave, blocks the ray. `stored`: DepthBuffer::reciprocal().
+    /// Whether the surface of that pixel, the last that step() gave, blocks the ray. `stored`:
+    /// DepthBuffer::reciprocal().
     bool is_blocked(float stored, std::uint32_t x, std::uint32_t y, const DepthBuffer& depths, const CameraRays& camera,
                     const ScreenMarch& march) const {
         if (!(stored > here_)) return false;

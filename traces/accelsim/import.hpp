@@ -22,8 +22,8 @@ struct ImportSettings {
     std::string program, command;  ///< for Provenance
     NullLanes null_lanes = NullLanes::drop_loads;
     bool stores = false;
-    /// The loads are visits of a traversal, each of which waits for the one before, as in a capture. Else the trace says
-    /// by their registers what waits for what, and what else a warp issues (Header::issue).
+    /// The loads are visits of a traversal, each of which waits for the one before, as in a capture. Else the trace
+    /// says by their registers what waits for what, and what else a warp issues (Header::issue).
     bool traversal = false;
 };
 

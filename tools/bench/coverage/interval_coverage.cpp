@@ -10,6 +10,7 @@
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "cachesim/report/report.hpp"
 #include "cachesim/report/timed_report.hpp"
+#include "tools/jobs/windows/steady_replay.hpp"
 #include "tools/jobs/windows/window_replay.hpp"
 #include "tracer/sampling/random_stream.hpp"
 
@@ -19,8 +20,6 @@ namespace {
 using tools::BlockResult;
 
 const std::vector<std::string> strategies{"cranley-patterson", "micro-jitter"};
-/// Before anything exact is counted.
-constexpr std::uint32_t warm_up_launches = 6;
 
 using Captures = std::vector<std::unique_ptr<tracer::Capture>>;
 
@@ -37,12 +36,10 @@ Captures make_captures(const CoverageSettings& s, const tracer::PreparedScene& s
     return all;
 }
 
-/// The last launches uncounted, then every launch, then a wave that keeps the GPU busy.
 template <class Replay>
 auto steady_state(const tracer::Capture& capture, const cachesim::Gpu& gpu) {
     Replay replay(gpu, capture.header().regions, 0);
     const auto worker = capture.make_worker();
-    const std::uint32_t warps = capture.header().warps_per_launch;
     const auto push = [&](std::uint32_t launch, std::uint32_t count) {
         for (std::uint32_t warp = 0; warp < count; ++warp) {
             traces::WarpTrace trace;
@@ -50,13 +47,8 @@ auto steady_state(const tracer::Capture& capture, const cachesim::Gpu& gpu) {
             replay.push(std::make_shared<const traces::WarpTrace>(std::move(trace)));
         }
     };
-    const auto launches = static_cast<std::uint32_t>(capture.header().launches.size());
-    replay.count_until_here();
-    for (std::uint32_t i = launches - std::min(launches, warm_up_launches); i < launches; ++i) push(i, warps);
-    replay.count_from_here();
-    for (std::uint32_t i = 0; i < launches; ++i) push(i, warps);
-    replay.count_until_here();
-    push(0, std::min(warps, tools::wave_warps(gpu)));
+    tools::walk_steady(tools::extent_of(capture.settings()), tools::wave_warps(gpu),
+                       {push, [&] { replay.count_from_here(); }, [&] { replay.count_until_here(); }});
     return replay.finish();
 }
 

@@ -12,13 +12,12 @@
 #include "cachesim/replay/timed/timed_replay.hpp"
 #include "tools/bench/tradeoff/no_cache_models.hpp"
 #include "tools/jobs/windows/estimator.hpp"
+#include "tools/jobs/windows/steady_replay.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::bench {
 namespace {
 
-/// Before anything exact is counted.
-constexpr std::uint32_t warm_up_launches = 6;
 /// The first look of an estimate.
 constexpr std::uint32_t first_look = 8;
 
@@ -65,16 +64,20 @@ public:
         reuse_.emplace(gpu_, regions);
         counted_.emplace(gpu_, regions, 0);
         timed_.emplace(gpu_, regions, 0);
-        counted_->count_until_here();
-        timed_->count_until_here();
-        const auto launches = static_cast<std::uint32_t>(n);
-        push(capture, launches - std::min(launches, warm_up_launches), launches, false);
-        counted_->count_from_here();
-        timed_->count_from_here();
-        push(capture, 0, launches, true);
-        counted_->count_until_here();
-        timed_->count_until_here();
-        push_wave(trace(capture, 0, 0, std::min(ladder_.warps, ladder_.wave)), false);  // nothing counted drains
+        bool counts = false;
+        const auto count = [&](bool from_here) {
+            counts = from_here;
+            if (from_here) {
+                counted_->count_from_here();
+                timed_->count_from_here();
+            } else {
+                counted_->count_until_here();
+                timed_->count_until_here();
+            }
+        };
+        tools::walk_steady(tools::extent_of(settings), ladder_.wave,
+                           {[&](std::uint32_t launch, std::uint32_t warps) { push(capture, launch, warps, counts); },
+                            [&] { count(true); }, [&] { count(false); }});
         finish();
     }
 
@@ -98,10 +101,9 @@ private:
         return wave;
     }
 
-    void push(const tracer::Capture& capture, std::uint32_t begin, std::uint32_t end, bool counted) {
-        for (std::uint32_t launch = begin; launch < end; ++launch)
-            for (std::uint32_t warp = 0; warp < ladder_.warps; warp += ladder_.wave)
-                push_wave(trace(capture, launch, warp, std::min(warp + ladder_.wave, ladder_.warps)), counted);
+    void push(const tracer::Capture& capture, std::uint32_t launch, std::uint32_t warps, bool counted) {
+        for (std::uint32_t warp = 0; warp < warps; warp += ladder_.wave)
+            push_wave(trace(capture, launch, warp, std::min(warp + ladder_.wave, warps)), counted);
     }
 
     void push_wave(const Wave& wave, bool counted) {

@@ -50,7 +50,8 @@ struct Estimated {
 /// Throws UsageError for traces, wavefronts and settings that make no sense.
 void check_windows(const LaunchSettings&, const EstimateSettings&);
 
-/// Throws as check_windows() and as Launches do. The same result for any number of threads, unless there is a time budget.
+/// Throws as check_windows() and as Launches do. The same result for any number of threads, unless there is a time
+/// budget.
 Estimated estimate(const LaunchSettings&, const EstimateSettings&, const std::vector<cachesim::Gpu>&, bool timed,
                    Observer&, const FileNames& outputs);
 

@@ -60,22 +60,16 @@ SteadyCounts replay_all(const tracer::Capture& capture, const cachesim::Gpu& gpu
             timed.push(shared);
         }
     };
-    const std::uint32_t wave = wave_warps(gpu), before = warm_up(extent, wave);
-    counted.count_until_here();
-    timed.count_until_here();
-    for (std::uint32_t i = 0; i < before; ++i)  // the last ones, round and round
-        push((extent.launches - before % extent.launches + i) % extent.launches, extent.warps);
-    counted.count_from_here();
-    timed.count_from_here();
-    for (std::uint32_t round = 0; round < rounds_of(extent, wave); ++round)
-        for (std::uint32_t i = 0; i < extent.launches; ++i) push(i, extent.warps);
-    counted.count_until_here();
-    timed.count_until_here();
-    for (std::uint32_t left = wave, i = 0; left > 0; i = (i + 1) % extent.launches) {
-        const std::uint32_t warps = std::min(left, extent.warps);
-        push(i, warps);
-        left -= warps;
-    }
+    walk_steady(extent, wave_warps(gpu),
+                {push,
+                 [&] {
+                     counted.count_from_here();
+                     timed.count_from_here();
+                 },
+                 [&] {
+                     counted.count_until_here();
+                     timed.count_until_here();
+                 }});
     SteadyCounts all{counted.finish(), timed.finish()};
     if (all.time.cycles == 0)
         throw Error(fmt::format(
@@ -86,6 +80,22 @@ SteadyCounts replay_all(const tracer::Capture& capture, const cachesim::Gpu& gpu
 }
 
 }  // namespace
+
+void walk_steady(const LaunchExtent& extent, std::uint32_t wave, const SteadyWalk& walk) {
+    const std::uint32_t before = warm_up(extent, wave);
+    walk.count_until_here();
+    for (std::uint32_t i = 0; i < before; ++i)  // the last ones, round and round
+        walk.push((extent.launches - before % extent.launches + i) % extent.launches, extent.warps);
+    walk.count_from_here();
+    for (std::uint32_t round = 0; round < rounds_of(extent, wave); ++round)
+        for (std::uint32_t i = 0; i < extent.launches; ++i) walk.push(i, extent.warps);
+    walk.count_until_here();
+    for (std::uint32_t left = wave, i = 0; left > 0; i = (i + 1) % extent.launches) {
+        const std::uint32_t warps = std::min(left, extent.warps);
+        walk.push(i, warps);
+        left -= warps;
+    }
+}
 
 double steady_cost(const std::vector<WindowedStrategy>& strategies, const std::vector<cachesim::Gpu>& gpus) {
     double seconds = 0;

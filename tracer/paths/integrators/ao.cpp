@@ -1,5 +1,5 @@
 // ao: ambient occlusion in the world. From where a camera ray ends one ray goes into the hemisphere above the surface;
-// the sample is 1 where it meets nothing within `radius`, else 0. Directions have density cos(theta) / pi, so the mean is
+// the sample is 1 where it meets nothing within `radius`, else 0. With directions of density cos(theta) / pi the mean is
 //   A(p, n) = 1/pi * integral over the hemisphere of V(p, w) (n . w) dw,  V = 1 where nothing is within the radius
 // (S. Zhukov, A. Iones, G. Kronin, "An ambient light illumination model", EGWR 1998, with a step for their function of
 // distance; H. Landis, "Production-ready global illumination", SIGGRAPH 2002 course 16, without a radius). Camera rays
