@@ -107,7 +107,8 @@ template <>
 struct Fields<CaptureJob> {
     using S = CaptureJob;
     static constexpr std::tuple all{Field{"scene", &S::scene}, Field{"sampling", &S::sampling},
-                                    Field{"case", &S::strategy}, Field{"output", &S::output}};
+                                    Field{"case", &S::strategy}, Field{"output", &S::output},
+                                    Field{"gpu_package", &S::gpu_package}};
 };
 
 template <>

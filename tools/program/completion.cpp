@@ -68,6 +68,7 @@ const std::map<std::string, Candidates>& known() {
             {"TOPIC",
              {{"strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes"}, {}}},
             {"--output", any_file},
+            {"--gpu-package", any_file},
             {"--save", any_file},
             {"--recover", traces},
             {"--reference", {{}, {"exr"}}},

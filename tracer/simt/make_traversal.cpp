@@ -34,5 +34,6 @@ std::unique_ptr<Traversal> make_traversal(const PreparedScene& scene, Recorder& 
 
 template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, WarpRecorder&, std::uint8_t);
 template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, NullRecorder&, std::uint8_t);
+template std::unique_ptr<Traversal> make_traversal(const PreparedScene&, HoleRecorder&, std::uint8_t);
 
 }  // namespace raycache::tracer

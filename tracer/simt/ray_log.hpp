@@ -36,9 +36,26 @@ struct RayLog {
     }
 };
 
-/// A launch of a megakernel, traced on all threads of the current TBB arena; the result does not depend on their
-/// number.
-RayLog log_rays(const Capture&, std::uint32_t launch);
+/// What the tracer's own walk found, beside RayLog::ends.
+struct RayHits {
+    struct Hole {
+        std::uint64_t ray;       ///< entry of the log
+        std::uint32_t triangle;  ///< of the scene: met, and passed through
+        bool operator==(const Hole&) const = default;
+    };
+    std::vector<std::uint32_t> masks;      ///< of each batch: its lanes
+    std::vector<std::uint32_t> triangles;  ///< of each ray: that of the nearest hit; no_triangle: none, or a shadow ray
+    std::vector<Hole> holes;               ///< in the order of rays
+
+    std::uint64_t bytes() const {
+        return (masks.size() + triangles.size()) * sizeof(std::uint32_t) + holes.size() * sizeof(Hole);
+    }
+};
+
+/// A launch, traced on all threads of the current TBB arena; the result does not depend on their number. Of a
+/// megakernel the batches come warp by warp. Of a wavefront they come kernel by kernel, the warps of each in order;
+/// RayBatch::warp counts within the kernel. `hits`: written where it is not null.
+RayLog log_rays(const Capture&, std::uint32_t launch, RayHits* hits = nullptr);
 
 /// The batches for which `is_wanted` holds, and their rays.
 RayLog only(const RayLog&, const std::function<bool(const RayBatch&)>& is_wanted);

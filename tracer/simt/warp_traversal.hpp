@@ -17,7 +17,7 @@
 
 namespace raycache::tracer {
 
-/// `Recorder` is WarpRecorder to write a trace, NullRecorder to walk alone.
+/// `Recorder` is WarpRecorder to write a trace, NullRecorder to walk alone, HoleRecorder to hear of holes.
 template <WalkableBvh Tree, class Recorder>
 class WarpTraversal final : public Traversal {
 public:
@@ -192,7 +192,10 @@ private:
             const Cutout cutout = cutout_at(*scene_, *texels_, hit.triangle, hit.u, hit.v);
             elements[l] = cutout.element;
             textured |= bit_if(cutout.textured, 1U << l);
-            if (cutout.solid) solid |= accept(l, hits);
+            if (cutout.solid)
+                solid |= accept(l, hits);
+            else if constexpr (requires { recorder_->passed(l, hit.triangle); })
+                recorder_->passed(l, hit.triangle);
         }
         if (textured != 0) record(textured, texel_region, more, elements);
         return solid;

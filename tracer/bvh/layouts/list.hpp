@@ -3,7 +3,7 @@
 //   max_leaf_size              triangles of a leaf of the tree that it is made of, at most
 //   make(const Bvh&, const Scene&)   unique_ptr to a Tree
 //   Tree                       what the traversal walks, a WalkableBvh: a type of its own, or that of another layout
-// and add it here. Only registry.cpp and the traversal's factory include this file.
+// and add it here. Only registry.cpp, memory.cpp and the traversal's factory include this file.
 #pragma once
 
 #include "tracer/bvh/layouts/bvh2.hpp"
