@@ -1,7 +1,7 @@
 // Ivy that winds up columns and spreads over the wall above; bougainvillea that falls over the gallery's railing.
 #include "tracer/scene/builtin/courtyard/parts.hpp"
 #include "tracer/scene/builtin/courtyard/plants.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "tracer/scene/builtin/courtyard/parts.hpp"
 #include "tracer/scene/builtin/courtyard/plants.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

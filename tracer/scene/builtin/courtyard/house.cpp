@@ -3,7 +3,7 @@
 #include <span>
 
 #include "tracer/scene/builtin/courtyard/parts.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

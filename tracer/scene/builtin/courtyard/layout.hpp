@@ -3,9 +3,11 @@
 
 #include <array>
 
-#include "tracer/scene/builtin/courtyard/mesh_builder.hpp"
+#include "tracer/scene/builtin/modelling/mesh_builder.hpp"
 
 namespace raycache::tracer::courtyard {
+
+using namespace modelling;
 
 inline constexpr float half_x = 10, half_z = 7;  // the open yard, to the column axes
 inline constexpr float arcade_depth = 3.2F;      // column axis to the rooms' wall

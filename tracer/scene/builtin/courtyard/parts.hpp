@@ -2,8 +2,9 @@
 #pragma once
 
 #include "tracer/scene/builtin/courtyard/layout.hpp"
-#include "tracer/scene/builtin/courtyard/mesh_builder.hpp"
-#include "tracer/scene/builtin/courtyard/shapes.hpp"
+#include "tracer/scene/builtin/courtyard/materials.hpp"
+#include "tracer/scene/builtin/modelling/mesh_builder.hpp"
+#include "tracer/scene/builtin/modelling/shapes.hpp"
 
 namespace raycache::tracer::courtyard {
 

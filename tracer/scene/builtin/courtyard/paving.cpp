@@ -2,7 +2,7 @@
 #include <array>
 
 #include "tracer/scene/builtin/courtyard/parts.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tracer/scene/builtin/courtyard/layout.hpp"
+#include "tracer/scene/builtin/courtyard/materials.hpp"
 
 namespace raycache::tracer::courtyard {
 

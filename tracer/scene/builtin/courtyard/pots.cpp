@@ -1,7 +1,7 @@
 // Flower pots along the arcade, jars in the corners, bowls on the fountain's step.
 #include "tracer/scene/builtin/courtyard/parts.hpp"
 #include "tracer/scene/builtin/courtyard/plants.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 

@@ -1,6 +1,6 @@
 // Roof tiles: rows of channels with their backs down, and rows of covers with their backs up over the joints.
 #include "tracer/scene/builtin/courtyard/parts.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

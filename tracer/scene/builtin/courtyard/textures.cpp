@@ -1,59 +1,18 @@
-// The three textures of the courtyard, computed from integers and square roots only.
-#include <array>
+// The three textures of the courtyard.
 #include <cstdlib>
 
 #include "tracer/scene/builtin/courtyard/materials.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/texture_maker.hpp"
 
 namespace raycache::tracer::courtyard {
+
+using namespace modelling;
 namespace {
-
-using Texel = std::array<std::uint8_t, 4>;
-
-template <class Shade>
-Texture make(const char* name, std::uint32_t size, const Shade& shade) {
-    Texture t;
-    t.name = name;
-    t.width = t.height = size;
-    t.rgba.reserve(4 * static_cast<std::size_t>(size) * size);
-    for (std::uint32_t y = 0; y < size; ++y) {
-        for (std::uint32_t x = 0; x < size; ++x) {
-            const Texel c = shade(static_cast<int>(x), static_cast<int>(y));
-            t.rgba.insert(t.rgba.end(), c.begin(), c.end());
-        }
-    }
-    return t;
-}
-
-std::uint8_t byte(float v) { return static_cast<std::uint8_t>(std::min(255.0F, std::max(0.0F, v))); }
-
-/// Value noise that repeats after `period` cells.
-class Noise {
-public:
-    Noise(std::uint64_t stream, int period) : period_(period) {
-        Random random(stream);
-        for (int i = 0; i < period * period; ++i) values_.push_back(random.unit());
-    }
-    float at(float x, float y) const {
-        const int ix = static_cast<int>(x), iy = static_cast<int>(y);
-        const float fx = smooth(x - static_cast<float>(ix)), fy = smooth(y - static_cast<float>(iy));
-        const float low = cell(ix, iy) + (cell(ix + 1, iy) - cell(ix, iy)) * fx;
-        const float high = cell(ix, iy + 1) + (cell(ix + 1, iy + 1) - cell(ix, iy + 1)) * fx;
-        return low + (high - low) * fy;
-    }
-
-private:
-    int period_;
-    std::vector<float> values_;
-
-    static float smooth(float t) { return t * t * (3 - 2 * t); }
-    float cell(int x, int y) const { return values_[static_cast<std::size_t>((y % period_) * period_ + x % period_)]; }
-};
 
 /// Lime wash: near white, so that a material's colour shows through, with blotches and grain.
 Texture plaster() {
     const Noise blotch(101, 4), cloud(102, 16), grain(103, 128);
-    return make("plaster", 256, [&](int x, int y) -> Texel {
+    return make_texture("plaster", 256, [&](int x, int y) -> Texel {
         const auto fx = static_cast<float>(x) / 256, fy = static_cast<float>(y) / 256;
         const float v =
             203 + 28 * blotch.at(4 * fx, 4 * fy) + 20 * cloud.at(16 * fx, 16 * fy) + 14 * grain.at(128 * fx, 128 * fy);
@@ -64,7 +23,7 @@ Texture plaster() {
 /// Four glazed tiles a side, each with a quarter-circle star in blue, ochre and cream, and grout between.
 Texture mosaic() {
     const Noise glaze(104, 32);
-    return make("mosaic", 512, [&](int x, int y) -> Texel {
+    return make_texture("mosaic", 512, [&](int x, int y) -> Texel {
         constexpr int tile = 128, grout = 3;
         const int tx = x % tile, ty = y % tile;
         if (tx < grout || ty < grout) return {126, 112, 98, 255};
@@ -92,7 +51,7 @@ Texture mosaic() {
 
 /// A sheet of papel picado: white paper (materials colour it) with petals, dots and a fringe cut out.
 Texture cut_paper() {
-    return make("cut paper", 128, [](int x, int y) -> Texel {
+    return make_texture("cut paper", 128, [](int x, int y) -> Texel {
         const int dx = std::min(x, 127 - x), from_middle = std::abs(2 * x - 127), cy = 56;
         bool hole = false;
         if (y >= 112) hole = (x / 8) % 2 == 0;                  // fringe

@@ -1,7 +1,7 @@
 // Trees: branches that divide towards points inside the crown, and their wood as tapered tubes.
 #include "tracer/scene/builtin/courtyard/parts.hpp"
 #include "tracer/scene/builtin/courtyard/plants.hpp"
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
 namespace raycache::tracer::courtyard {
 namespace {

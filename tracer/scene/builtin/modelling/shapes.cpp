@@ -1,10 +1,10 @@
-#include "tracer/scene/builtin/courtyard/shapes.hpp"
+#include "tracer/scene/builtin/modelling/shapes.hpp"
 
 #include <array>
 
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
-namespace raycache::tracer::courtyard {
+namespace raycache::tracer::modelling {
 
 void flat(MeshBuilder& b, Vec3 a, Vec3 right, Vec3 c, Vec3 d, float uv_per_metre) {
     const Vec3 along = normalize(right - a), up = cross(normalize(cross(right - a, d - a)), along);
@@ -242,4 +242,4 @@ void ring(MeshBuilder& b, Vec3 centre, float radius, float wire, int around, int
     }
 }
 
-}  // namespace raycache::tracer::courtyard
+}  // namespace raycache::tracer::modelling

@@ -1,10 +1,10 @@
-#include "tracer/scene/builtin/courtyard/mesh_builder.hpp"
+#include "tracer/scene/builtin/modelling/mesh_builder.hpp"
 
 #include <utility>
 
-#include "tracer/scene/builtin/courtyard/random.hpp"
+#include "tracer/scene/builtin/modelling/random.hpp"
 
-namespace raycache::tracer::courtyard {
+namespace raycache::tracer::modelling {
 
 Transform moved(Vec3 to) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, to}; }
 
@@ -53,7 +53,7 @@ void MeshBuilder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     ++triangles_;
     if (counting_) return;
     indices_.insert(indices_.end(), {a, b, c});
-    material_of_.push_back(static_cast<std::uint16_t>(stuff_));
+    material_of_.push_back(material_.value);
 }
 
 void MeshBuilder::quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -79,9 +79,9 @@ void MeshBuilder::add(const MeshBuilder& part, const Transform& where) {
     if (!counting_) material_of_.insert(material_of_.end(), part.material_of_.begin(), part.material_of_.end());
 }
 
-void MeshBuilder::add(const MeshBuilder& part, const Transform& where, Stuff stuff) {
+void MeshBuilder::add(const MeshBuilder& part, const Transform& where, MaterialIndex material) {
     copy_geometry(part, where);
-    if (!counting_) material_of_.insert(material_of_.end(), part.triangles_, static_cast<std::uint16_t>(stuff));
+    if (!counting_) material_of_.insert(material_of_.end(), part.triangles_, material.value);
 }
 
 void MeshBuilder::count(std::size_t vertices, std::size_t triangles) {
@@ -97,4 +97,4 @@ void MeshBuilder::move_into(Scene& scene) && {
     scene.material_of = std::move(material_of_);
 }
 
-}  // namespace raycache::tracer::courtyard
+}  // namespace raycache::tracer::modelling

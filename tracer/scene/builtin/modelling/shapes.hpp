@@ -1,13 +1,13 @@
-// Surfaces that the courtyard's parts are put together from. All go into the builder's current frame and material, with
-// smooth normals where the surface is curved and face normals where it is flat.
+// Surfaces that the parts of built-in scenes are put together from. All go into the builder's current frame and
+// material, with smooth normals where the surface is curved and face normals where it is flat.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "tracer/scene/builtin/courtyard/mesh_builder.hpp"
+#include "tracer/scene/builtin/modelling/mesh_builder.hpp"
 
-namespace raycache::tracer::courtyard {
+namespace raycache::tracer::modelling {
 
 /// How fine a part is made. 1 is about right for half a million triangles; counts grow in proportion, so triangles of a
 /// curved surface grow with the square.
@@ -93,4 +93,4 @@ void sheet(MeshBuilder& b, int nu, int nv, const At& at, Vec2 uv_scale = {0, 0},
     }
 }
 
-}  // namespace raycache::tracer::courtyard
+}  // namespace raycache::tracer::modelling

@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
-#include "tracer/scene/builtin/courtyard/materials.hpp"
 #include "tracer/scene/scene.hpp"
 
-namespace raycache::tracer::courtyard {
+namespace raycache::tracer::modelling {
 
 /// An affine map that keeps handedness: columns x, y, z and an origin.
 struct Transform {
@@ -31,6 +31,15 @@ Transform scaled(Vec3 by);
 /// +Y goes to `up` (any length but zero), the other axes to some frame around it, turned about it by `turns`.
 Transform aligned(Vec3 up, double turns, Vec3 origin);
 
+/// An index into Scene::materials; a scene names its own by an enumeration.
+struct MaterialIndex {
+    std::uint16_t value;
+
+    template <class Name>
+    requires std::is_enum_v<Name> MaterialIndex(Name name) : value(static_cast<std::uint16_t>(name)) {}
+    explicit MaterialIndex(std::uint16_t v) : value(v) {}
+};
+
 class MeshBuilder {
 public:
     /// A builder that only counts.
@@ -44,7 +53,7 @@ public:
     void reserve(std::size_t vertices, std::size_t triangles);
 
     /// Material of later triangles.
-    void use(Stuff stuff) { stuff_ = stuff; }
+    void use(MaterialIndex material) { material_ = material; }
     /// Where later vertices and parts go.
     void frame(const Transform& frame) { frame_ = frame; }
     const Transform& frame() const { return frame_; }
@@ -57,7 +66,7 @@ public:
     /// A copy of `part`, in its own materials.
     void add(const MeshBuilder& part, const Transform& where);
     /// A copy of `part`, all in one material.
-    void add(const MeshBuilder& part, const Transform& where, Stuff stuff);
+    void add(const MeshBuilder& part, const Transform& where, MaterialIndex material);
     /// `vertices` and `triangles` that would have come; for counting builders only.
     void count(std::size_t vertices, std::size_t triangles);
 
@@ -67,7 +76,7 @@ public:
 private:
     bool counting_ = false;
     std::size_t vertices_ = 0, triangles_ = 0;
-    Stuff stuff_{};
+    MaterialIndex material_{0};
     Transform frame_;
     std::vector<Vec3> positions_, normals_;
     std::vector<Vec2> texcoords_;
@@ -77,4 +86,4 @@ private:
     void copy_geometry(const MeshBuilder& part, const Transform& where);
 };
 
-}  // namespace raycache::tracer::courtyard
+}  // namespace raycache::tracer::modelling

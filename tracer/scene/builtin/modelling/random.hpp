@@ -6,10 +6,10 @@
 
 #include "tracer/vec.hpp"
 
-namespace raycache::tracer::courtyard {
+namespace raycache::tracer::modelling {
 
 /// One number per full expression, or in braces: else the compiler chooses which comes first.
-/// PCG32 (O'Neill 2014, XSH-RR 64/32). Every part of the courtyard owns one with its own stream, so that more detail in
+/// PCG32 (O'Neill 2014, XSH-RR 64/32). Every part of a scene owns one with its own stream, so that more detail in
 /// one part moves nothing in another.
 class Random {
 public:
@@ -73,4 +73,4 @@ inline CosSin cos_sin(double turns) {
     }
 }
 
-}  // namespace raycache::tracer::courtyard
+}  // namespace raycache::tracer::modelling
