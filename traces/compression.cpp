@@ -4,6 +4,7 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <new>
@@ -90,7 +91,7 @@ void decompress_pieces(std::span<const std::uint8_t> stored, std::uint64_t size,
     ZSTD_DCtx_reset(decompressor(), ZSTD_reset_session_only);
     // pieces_memory() bounds the window, which is as large as the content of a frame in a single segment.
     ZSTD_DCtx_setParameter(decompressor(), ZSTD_d_windowLogMax, ZSTD_WINDOWLOG_MAX);
-    Bytes piece(ZSTD_DStreamOutSize());
+    Bytes piece(std::clamp<std::uint64_t>(size, 1, ZSTD_DStreamOutSize()));
     ZSTD_inBuffer in{stored.data(), stored.size(), 0};
     std::uint64_t done = 0;
     for (std::size_t left = 1; left != 0;) {
