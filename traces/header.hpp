@@ -50,7 +50,7 @@ struct Provenance {
     std::string sequence;       ///< "sobol"
     std::string decorrelation;  ///< "micro-jitter"; the table calls it the strategy
     std::string parameters;     ///< "K=2.5 s=2 mu=0.078125"; empty if the decorrelation has none
-    std::string thread_map;     ///< "tile", "samples" or "classes:8"
+    std::string thread_map;     ///< "tile", "samples", "rows", "classes:8"
     std::string layout;         ///< "bvh2"
     std::uint64_t spp = 0;      ///< N, size of the sample set
     std::uint64_t seed = 0;

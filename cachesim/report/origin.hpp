@@ -15,6 +15,7 @@
 
 #include "cachesim/analysis/counts.hpp"
 #include "traces/error.hpp"
+#include "traces/record.hpp"
 
 namespace raycache::cachesim {
 
@@ -39,14 +40,15 @@ struct Origin {
     std::uint64_t spp = 0;                  ///< N
     CacheUnits caches;                      ///< of the GPU
     std::optional<WindowSample> windows{};  ///< none: whole launches, each from cold caches
+    /// Sample indices of every pixel that each launch holds. Launches of as many can be paired one by one: thread maps
+    /// then differ only in which of these paths share a warp, which is part of the strategy.
+    std::uint32_t indices = 1;
 };
 
-/// Whether launches made with these thread maps (Provenance::thread_map) hold the same pixels and sample indices, so
-/// that launch by launch they can be paired: "tile" and "classes:M" both trace one sample index of every pixel and
-/// differ only in which pixels share a warp, which is part of the strategy.
-inline bool same_work_per_launch(std::string_view a, std::string_view b) {
-    const auto one_sample = [](std::string_view map) { return map == "tile" || map.starts_with("classes"); };
-    return a == b || (one_sample(a) && one_sample(b));
+/// Of a launch of a trace with that thread map (Provenance::thread_map): "samples" has 32 sample indices in a warp, all
+/// others one.
+inline std::uint32_t indices_per_launch(std::string_view thread_map) {
+    return thread_map == "samples" ? traces::warp_lanes : 1;
 }
 
 /// What ratios refer to: a strategy, on the GPU of each row or, for variants of one GPU, on one of them.
@@ -66,8 +68,7 @@ struct Baseline {
     /// Whether `base` may be it for `of`: they differ in what a strategy is made of, or in `gpu`, and in nothing else.
     bool serves(const Origin& base, const Origin& of) const {
         const auto key = [](const Origin& o) { return std::tie(o.scene, o.sequence, o.spp); };
-        return is(base) && key(base) == key(of) && (!gpu.empty() || base.gpu == of.gpu) &&
-               same_work_per_launch(base.thread_map, of.thread_map);
+        return is(base) && key(base) == key(of) && (!gpu.empty() || base.gpu == of.gpu) && base.indices == of.indices;
     }
 };
 

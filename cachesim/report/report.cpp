@@ -145,7 +145,9 @@ Report make_report(const std::vector<Series>& all_series, const Baseline& baseli
         if (!baseline.empty() && !baseline.is(row)) compare(row, report.rows, baseline, notes);
         widen(row);
         if (row.samples.size() == 1 && !(row.windows && row.windows->all_indices))
-            notes.add("one sample index: no confidence interval");
+            notes.add(row.indices == 1
+                          ? std::string("one sample index: no confidence interval")
+                          : fmt::format("one launch of {} sample indices: no confidence interval", row.indices));
     }
     note_windows(report.rows, [&](const std::string& note) { notes.add(note); });
     note_compulsory(report, notes);

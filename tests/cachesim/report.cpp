@@ -128,12 +128,15 @@ TEST_CASE("ratios across variants of a GPU are to the baseline on one of them, a
     CHECK(other.notes.front().find("its caches have other levels or sectors") != std::string::npos);
 }
 
-TEST_CASE("warps of pixel classes are compared with warps of tiles, warps of one pixel's samples with neither") {
+TEST_CASE("thread maps are compared with one another where launches hold as many sample indices") {
     auto all = two_strategies();
-    all[1].thread_map = "classes:8";
-    CHECK(make_report(all, "rotation", GroupBy::none).rows[1]["dram_bytes_ratio"].has_value());
-    all[1].thread_map = "samples";
+    for (const char* map : {"classes:8", "rows", "samples"}) {
+        all[1].thread_map = map;
+        CHECK(make_report(all, "rotation", GroupBy::none).rows[1]["dram_bytes_ratio"].has_value());
+    }
+    all[1].indices = indices_per_launch("samples");
     CHECK_FALSE(make_report(all, "rotation", GroupBy::none).rows[1]["dram_bytes_ratio"].has_value());
+    all[1].indices = indices_per_launch("rows");
 
     // A baseline with the row's own thread map comes first.
     all[1].thread_map = "classes:8";

@@ -6,7 +6,8 @@ from support import GPU, LAUNCHES, PICTURE, SCENE, ProgramTest, main
 
 SUBCOMMANDS = ["render", "capture", "info", "verify", "replay", "compare", "counters", "explain", "export",
                "import", "list"]
-TOPICS = ["strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes", "figures", "timed-figures"]
+TOPICS = ["strategies", "groups", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes",
+          "figures", "timed-figures"]
 
 
 class HelpAndList(ProgramTest):

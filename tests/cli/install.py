@@ -124,6 +124,7 @@ class Install(ProgramTest):
         self.installed("raycache-report", "study.json", "-o", "page.html")
         self.assertIn("</html>", self.path("page.html").read_text("utf-8"))
         self.assertIn("usage", self.installed("raycache-plot-sweep", "--help"))
+        self.assertIn("usage", self.installed("raycache-plot-quality", "--help"))
         self.assertIn("usage", self.installed("raycache-plot-curve", "--help"))
         self.assertIn("usage", self.installed("raycache-plot-counters", "--help"))
 

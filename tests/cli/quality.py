@@ -74,6 +74,57 @@ class QualityTest(ProgramTest):
         return sorted((self.path("cache") / "raycache/references").glob("*"))
 
 
+class EqualError(QualityTest):
+    """The speed-up times the variance ratio."""
+    ARGUMENTS = ["--strategy", "cranley-patterson,owen,coherent", "--spp", "4,16", "--repeats", "2", *GPU]
+
+    def test_every_row_has_its_gain_at_equal_error_over_each_baseline_or_says_why_there_is_none(self):
+        rows = self.quality(*self.ARGUMENTS, "--json").json["rows"]
+        for row in rows:
+            others = [name for name in ("cranley-patterson", "owen") if name != row["strategy"]]
+            self.assertEqual([e["baseline"] for e in row["equal_error"]], [f"{o} N={row['spp']}" for o in others])
+            for e in row["equal_error"]:
+                base = next(r for r in rows if r["label"] == e["baseline"])
+                self.assertAlmostEqual(e["speed_up"]["mean"],
+                                       base["predicted_seconds"] / row["predicted_seconds"], places=6)
+                self.assertAlmostEqual(e["gain_by_rmse"]["mean"], e["speed_up"]["mean"] / e["rmse_ratio"]**2, places=9)
+                self.assertEqual(e["gain"], e["gain_by_rmse"] if row["no_equal_error"] is None else None)
+        shared = {row["spp"]: row["no_equal_error"] for row in rows if row["strategy"] == "coherent"}
+        self.assertRegex(shared[16], "R8 .*, at most 2|bias: z seeds")
+        text = self.quality(*self.ARGUMENTS, "--wide")
+        self.assertRegex(text.text, r"coherent N=16 .* none +none\n")
+        self.assertRegex(text.text, "coherent N=16: no time to an equal error: .*by its RMSE alone")
+        table = list(csv.DictReader(io.StringIO(self.quality(*self.ARGUMENTS, "--csv").text)))
+        self.assertEqual([row["gain_owen"] != "" for row in table],
+                         [row["strategy"] != "owen" and row["no_equal_error"] is None for row in rows])
+        self.assertEqual({row["gain_blue_noise"] for row in table}, {""})
+
+    def test_times_may_be_of_a_larger_picture_and_of_windows_and_strategies_of_different_maps(self):
+        report = self.quality("--strategy", "owen@samples,micro-jitter:k=1@rows,micro-jitter:k=4@tile", "--baseline",
+                              "owen", "--gpu", "rtx-3070", "--set", "sms=1", "--time-resolution", "128x64", "--windows",
+                              "16", "--spp", "64", "--json").json
+        self.assertEqual(report["time_resolution"], "128x64")
+        self.assertEqual([row["label"] for row in report["rows"]],
+                         ["owen@samples", "micro-jitter k=1@rows", "micro-jitter k=4@tile"])
+        for row in report["rows"][1:]:
+            self.assertGreater(row["speed_up"]["half_width_95"], 0)
+            self.assertAlmostEqual(row["equal_error"][0]["speed_up"]["mean"], row["speed_up"]["mean"])
+        self.refuses(2, "quality", *small("--time-resolution", "64x64"), mentions=["--time-resolution", "--gpu"])
+
+    def test_the_plot_of_error_against_time_is_drawn_and_needs_times(self):
+        plot = [sys.executable, ROOT / "tools/plot_quality"]
+        usual = {name: value for name, value in os.environ.items() if name != "XDG_CACHE_HOME"}
+        for name, arguments, code in (("timed", self.ARGUMENTS, 0), ("untimed", self.ARGUMENTS[:4], 1)):
+            self.path(f"{name}.json").write_bytes(self.quality(*arguments, "--json").stdout)
+            done = subprocess.run([*plot, f"{name}.json", "-o", f"{name}.png"], cwd=self.folder, env=usual,
+                                  capture_output=True, timeout=300, check=False)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertNotIn(b"Warning", done.stderr)
+        self.assertIn(b"--gpu", done.stderr)
+        self.assertEqual(self.path("timed.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertFalse(self.path("untimed.png").exists())
+
+
 class Quality(QualityTest):
     def test_the_table_has_a_row_per_strategy_and_says_what_its_columns_mean(self):
         text = self.quality("--strategy", "coherent,cranley-patterson").text

@@ -83,7 +83,7 @@ class Strategies(ProgramTest):
             rows = self.succeeds(*mixed, *format, "--json").json["rows"]
             self.assertEqual([(row["strategy"], row["thread_map"]) for row in rows], list(zip(names, maps, strict=True)))
         alone = self.succeeds(*compare, "--strategy", "cranley-patterson", "--thread-map", "classes", "--json").json["rows"]
-        row = self.succeeds(*mixed, "--json").json["rows"][1]
+        row = self.succeeds(*compare, "--strategy", ",".join(names[1:]), "--json").json["rows"][0]
         self.assertEqual(row["totals"], alone[0]["totals"])
         against = self.succeeds(*compare, "--strategy", ",".join(names[:2]), "--json").json["rows"]
         self.assertGreater(against[1]["dram_bytes_ratio"]["mean"], 0)  # held against the tiles
@@ -91,15 +91,49 @@ class Strategies(ProgramTest):
                              "--strategy", "cranley-patterson,cranley-patterson@classes").text
         self.assertIn("cranley-patterson@classes", text)
 
+    def test_thread_maps_are_paired_over_the_same_paths_whatever_a_launch_of_theirs_holds(self):
+        strategies = "owen@samples,owen@rows,owen@tile"
+        compare = ["compare", "--scene", *SCENE, "--bounces", "1", "--spp", "40", "--strategy", strategies, *GPU,
+                   "--baseline", "owen@samples", "--json", "--resolution"]
+        exact = self.warns(*compare, "33x17", "--trace-samples", "40").json["rows"]  # of N
+        self.assertEqual(len({row["rays"] for row in (r["totals"] for r in exact)}), 1)
+        for row in exact:
+            self.assertEqual(row["samples"], [0, 32])
+            self.assertEqual(row["dram_bytes_ratio"] is not None, row["strategy"] != "owen@samples")
+        timed = self.warns(*compare, "64x64", "--timed", "--windows", "16", "--set", "sms=1").json["rows"]
+        for row in timed[1:]:
+            self.assertGreater(row["speed_up"]["half_width_95"], 0)
+
+    def test_a_group_stands_for_its_strategies_and_brings_its_baseline(self):
+        listed = self.succeeds("list", "groups", "--json").json["topics"]["groups"]
+        cycles = next(group for group in listed if group["name"] == "cycles")["strategies"]
+        compare = ["compare", "--scene", *SCENE, "--resolution", "32x32", "--trace-samples", "1", "--bounces", "1",
+                   "--spp", "64", *GPU, "--json", "--strategy"]
+        report = self.succeeds(*compare, "cycles").json
+        self.assertEqual([row["strategy"] for row in report["rows"]], cycles)
+        self.assertEqual([row["thread_map"] for row in report["rows"]], ["samples"] + ["rows"] * 4)
+        self.assertEqual([trace.get("mu") for trace in report["traces"]], [None, 0.5, 0.25, 0.125, 0.05])
+        self.assertEqual(report["rows"], self.succeeds(*compare, ",".join(cycles), "--baseline", cycles[0]).json["rows"])
+        self.assertIn("'cycles'", self.refuses(2, *CAPTURE, "--strategy", "cycles"))
+
+    def test_a_parameter_in_the_name_is_that_strategys_own(self):
+        self.assertEqual(self.recorded("--strategy", "micro-jitter:k=1:s=3")["traces"],
+                         self.recorded("--strategy", "micro-jitter", "--k", "1", "--s", "3")["traces"])
+        rows = self.succeeds("compare", "--scene", *SCENE, *LAUNCHES, "--spp", "64", *GPU, "--k", "4", "--strategy",
+                             "micro-jitter,micro-jitter:k=1", "--json").json["rows"]
+        self.assertEqual([row["strategy"] for row in rows], ["micro-jitter", "micro-jitter:k=1"])
+        self.assertEqual([row["parameters"] for row in rows], ["K=4 s=2 mu=0.5", "K=1 s=2 mu=0.125"])
+        line = self.refuses(2, *CAPTURE, "--strategy", "scrambling-distance:cycles-multiplier=0.5", "--mu", "0.1")
+        self.assertIn("cycles-multiplier has no effect", line)
+
     def test_a_thread_map_in_the_name_gives_the_trace_of_the_option(self):
         by_name = self.recorded("--strategy", "owen@samples")
         trace = self.path("trace.rct").read_bytes()
         self.assertEqual(self.recorded("--strategy", "owen", "--thread-map", "samples"), by_name)
         self.assertEqual(self.path("trace.rct").read_bytes(), trace)
         self.assertIn("did you mean 'samples'?", self.refuses(2, *CAPTURE, "--strategy", "owen@sample"))
-        for command in (["render", *SCENE], ["quality", *SCENE, "--reference", "r.exr"]):
-            output = ["-o", "a.png"] if command[0] == "render" else []
-            self.assertIn("'owen@tile'", self.refuses(2, *command, "--strategy", "owen@tile", *output))
+        self.assertIn("'owen@tile'", self.refuses(2, "render", *SCENE, "--strategy", "owen@tile", "-o", "a.png"))
+        self.assertIn("owen+morton", self.refuses(2, "quality", *SCENE, "--reference", "r.exr", "--strategy", "owen+morton"))
 
     def test_a_parameter_by_its_name_gives_the_trace_of_its_option(self):
         for strategy, options, named in [("micro-jitter", ["--mu", "0.1"], ["mu=0.1"]),

@@ -38,7 +38,8 @@ struct Block {
     BlockPlan plan;
 
     explicit Block(const tracer::PreparedScene& scene)
-        : of(make_case(scene, strategies_of(launches()).front(), sizes(), 0, 2)), plan(of.plan.block(1, of.first[1])) {}
+        : of(make_case(scene, strategies_of(launches()).front(), sizes(), 0, 2, 1)),
+          plan(of.plan.block(1, of.first[1])) {}
 };
 
 std::unique_ptr<tracer::PreparedScene> scene() {

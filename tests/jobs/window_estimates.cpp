@@ -4,8 +4,11 @@
 #include <cmath>
 
 #include "cachesim/report/report.hpp"
+#include "cachesim/report/timed_report.hpp"
 #include "small_jobs.hpp"
 #include "tools/bench/coverage/interval_coverage.hpp"
+#include "tools/jobs/launches.hpp"
+#include "tools/jobs/replay_launches.hpp"
 #include "tools/jobs/windows/estimate.hpp"
 
 using namespace raycache;
@@ -54,6 +57,41 @@ TEST_CASE("an estimate from windows of two strategies with the same samples is e
     const auto one_thread = estimated(1);
     REQUIRE(one_thread.size() == series.size());
     for (std::size_t s = 0; s < series.size(); ++s) CHECK(one_thread[s].launches == series[s].launches);
+}
+
+TEST_CASE("strategies of different thread maps are paired: in windows and in whole launches, over the same samples") {
+    LaunchSettings launches = test::small_launches({"owen@samples", "owen@rows", "owen@tile"});
+    launches.sampling.resolution = "64x48";  // some CTAs see nothing of the scene
+    for (CaseSettings& one : launches.cases) one.spp = 64;
+    launches.sampling.bounces = 1;
+    test::Listener listener;
+    EstimateSettings settings;
+    settings.windows = true;
+    settings.window_count = 4;
+    const auto gpus = small_gpu().load({});
+    const Predicted windows = estimate(launches, settings, gpus, true, listener, {}).result;
+    launches.sampling.resolution = "20x10";
+    const Launches whole(launches, {}, listener);
+    for (const LaunchSource& source : whole.sources()) {
+        CHECK(source.header->launches == whole.sources()[0].header->launches);
+        CHECK(source.indices == 32);
+    }
+    const Predicted exact = predict(whole.sources(), gpus, listener);
+    for (const bool in_windows : {true, false}) {
+        const Predicted& made = in_windows ? windows : exact;
+        const auto report = cachesim::make_timed_report(made.times, "owen@samples", made.traffic);
+        REQUIRE(report.rows.size() == 3);
+        const double rays = static_cast<double>(report.rows[0].totals.rays);
+        for (std::size_t r = 1; r < 3; ++r) {
+            INFO(report.rows[r].strategy);
+            // The paths are the same, or a sample of the same; only who shares a warp differs.
+            CHECK(static_cast<double>(report.rows[r].totals.rays) == Approx(rays).epsilon(in_windows ? 0.1 : 0));
+            CHECK(report.traffic.rows[r]["l2_bytes_ratio"]);
+            REQUIRE(report.rows[r]["speed_up"]);
+            CHECK(report.rows[r]["speed_up"]->mean > 0.3);
+            CHECK(report.rows[r]["speed_up"]->mean < 3);
+        }
+    }
 }
 
 TEST_CASE("intervals of estimates from windows hold the exact steady state as often as they say", "[slow]") {

@@ -74,6 +74,20 @@ TEST_CASE("launches of many sample indices make blocks of as many indices in few
     for (const std::uint32_t f : plan.draw(16)) CHECK(f % 64 == 0);
 }
 
+TEST_CASE("strategies whose launches hold different numbers of sample indices have the same blocks") {
+    for (const std::uint64_t spp : {16, 40, 64, 256, 1024, 10000}) {
+        const WindowPlan tiles(spp, 100, 1, 3, {}, 32), samples(spp, 3200, 32, 3, {}, 32);
+        CHECK(tiles.blocks() == samples.blocks());
+        CHECK(tiles.draw(20) == samples.draw(20));
+        CHECK(tiles.launches() == samples.launches() * samples.indices_per_launch());
+        CHECK(tiles.launches() == std::min<std::uint64_t>(spp, spp >= 512 ? 64 : 32));
+        for (const std::uint32_t first : tiles.draw(20)) {
+            CHECK(first % 32 == 0);
+            CHECK(first + tiles.launches() <= spp);
+        }
+    }
+}
+
 TEST_CASE("each equal part of the picture has one place, and each index of a block as many as any other") {
     constexpr std::uint32_t warps = 640, groups = 256;
     const WindowPlan plan(1024, warps, 1, 8);

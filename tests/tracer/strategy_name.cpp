@@ -23,6 +23,12 @@ TEST_CASE("A strategy's name is a decorrelation, an order, a thread map and a la
         {"owen/cwbvh8", {"owen", {}, {}, "cwbvh8"}},
         {"owen+morton@tile/bvh2", {"owen", "morton", "tile", "bvh2"}},
         {"a/b@c", {"a", {}, {}, "b@c"}},
+        {"micro-jitter:k=1", {"micro-jitter", {}, {}, {}, {"k=1"}}},
+        {"micro-jitter:k=1:s=full+morton@rows/bvh4", {"micro-jitter", "morton", "rows", "bvh4", {"k=1", "s=full"}}},
+        {"net-micro-jitter:share=camera+light0@rows", {"net-micro-jitter", {}, "rows", {}, {"share=camera+light0"}}},
+        {"net-micro-jitter:share=camera+light0+morton",
+         {"net-micro-jitter", "morton", {}, {}, {"share=camera+light0"}}},
+        {"a::", {"a", {}, {}, {}, {"", ""}}},
     }));
     CHECK(parse_strategy_name(text) == name);
     CHECK(to_string(name) == text);
@@ -33,6 +39,7 @@ TEST_CASE("A part that a name may not have is a letter of its decorrelation") {
     CHECK(parse_strategy_name("owen+morton@tile", {false, true}) == StrategyName{"owen+morton", {}, "tile"});
     CHECK(parse_strategy_name("owen+morton@tile", {true, false}) == StrategyName{"owen", "morton@tile"});
     CHECK(parse_strategy_name("owen/bvh4", {true, true, false}) == StrategyName{"owen/bvh4"});
+    CHECK(parse_strategy_name("owen:k=1", {true, true, true, false}) == StrategyName{"owen:k=1"});
 }
 
 TEST_CASE("A part of a name that no registry has is refused with the closest one") {
@@ -55,6 +62,15 @@ TEST_CASE("A part of a name that no registry has is refused with the closest one
     CHECK_THAT(refusal("owen+"), Contains("unknown ray order ''"));
     CHECK_THAT(refusal("owen@"), Contains("unknown thread map ''"));
     CHECK_THAT(refusal(""), Contains("unknown strategy ''"));
+    for (const char* valid : {"micro-jitter:k=1:s=full", "scrambling-distance:cycles-multiplier=0.5@rows"})
+        CHECK(refusal(valid) == "");
+    CHECK_THAT(refusal("micro-jitter:kk=1"), Contains("unknown parameter 'kk'") && Contains("mu, k, s"));
+    CHECK_THAT(refusal("owen:k=1"), Contains("owen has no parameters, found 'k'"));
+    CHECK_THAT(refusal("micro-jitter:k"), Contains("':k'; expected :PARAMETER=VALUE"));
+    CHECK_THAT(refusal("micro-jitter:"), Contains("':'; expected :PARAMETER=VALUE"));
+    CHECK_THAT(refusal("micro-jitter:k=-1"), Contains("K must be") && Contains("-1"));
+    CHECK_THAT(refusal("micro-jitter:k=1:k=2"), Contains("k is given twice"));
+    CHECK_THAT(refusal("scrambling-distance:mu=0.1+mortn"), Contains("0.1+mortn"));
 }
 
 TEST_CASE("What a name does not say, the other settings say") {

@@ -65,6 +65,26 @@ TEST_CASE("thread map: eight warps in a row make a square of 16x16 pixels, squar
         }
 }
 
+TEST_CASE("thread map: rows gives a warp 32 pixels that follow one another along the rows, every pixel once") {
+    for (const auto& [width, height] : sizes) {
+        const LaunchGrid grid(ThreadMap::rows, width, height, 8);
+        CHECK(grid.samples_per_launch() == 1);
+        std::uint32_t next = 0;
+        for (std::uint32_t warp = 0; warp < grid.warps(); ++warp) {
+            const WarpJobs jobs = grid.jobs(warp, 5);
+            REQUIRE(jobs.mask != 0);
+            for (unsigned l = 0; l < 32 && next < width * height; ++l, ++next) {
+                REQUIRE((jobs.mask >> l & 1U) == 1);
+                REQUIRE(jobs.lane[l].x == next % width);
+                REQUIRE(jobs.lane[l].y == next / width);
+                REQUIRE(jobs.lane[l].sample == 5);
+            }
+        }
+        CHECK(next == width * height);
+        CHECK(grid.jobs(0, 8).mask == 0);  // N is 8
+    }
+}
+
 TEST_CASE("thread map: samples gives a warp one pixel and 32 consecutive samples, every pixel once", "[slow]") {
     for (const auto& [width, height] : sizes) {
         const LaunchGrid grid(ThreadMap::samples, width, height, 64);
@@ -175,8 +195,8 @@ TEST_CASE("thread map: the name of a grid gives the same grid again, and no othe
 }
 
 TEST_CASE("thread map: a name gives its map, another one is refused with the list") {
-    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::classes})
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::rows, ThreadMap::classes})
         CHECK(thread_map_from(to_string(map)) == map);
     CHECK_THROWS_AS(thread_map_from("tiles"), UsageError);
-    CHECK_THROWS_WITH(thread_map_from(""), Catch::Contains("tile, samples, classes") && !Catch::Contains("\n"));
+    CHECK_THROWS_WITH(thread_map_from(""), Catch::Contains("tile, samples, rows, classes") && !Catch::Contains("\n"));
 }

@@ -9,6 +9,7 @@ function(link_command name script)
 endfunction()
 link_command(raycache-report report.py)
 link_command(raycache-plot-sweep plot_sweep)
+link_command(raycache-plot-quality plot_quality)
 link_command(raycache-plot-curve plot_curve)
 link_command(raycache-plot-counters plot_counters)
 

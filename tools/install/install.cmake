@@ -9,7 +9,7 @@ install(FILES cachesim/MODEL.md DESTINATION ${raycache_doc}/cachesim)
 install(FILES traces/FORMAT.md DESTINATION ${raycache_doc}/traces)
 
 # Each lies with its parts under share/raycache/tools; a link in bin makes it a command.
-install(PROGRAMS tools/report.py tools/plot_sweep tools/plot_curve tools/plot_counters DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/raycache/tools)
+install(PROGRAMS tools/report.py tools/plot_sweep tools/plot_quality tools/plot_curve tools/plot_counters DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/raycache/tools)
 install(FILES tools/files.py tools/plots.py tools/report_numbers.py tools/report_charts.py tools/report_page.html
         DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/raycache/tools)
 # Made at install time, from the program as it was built, for the prefix that is given then.

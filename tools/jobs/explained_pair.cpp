@@ -38,7 +38,8 @@ void check_comparable(const ExplainedPair& pair) {
     same("camera", a.camera, b.camera);
     same("resolution", fmt::format("{}x{}", a.width, a.height), fmt::format("{}x{}", b.width, b.height));
     same("number of bounces", a.bounces, b.bounces);
-    if (!cachesim::same_work_per_launch(a.thread_map, b.thread_map)) same("thread map", a.thread_map, b.thread_map);
+    if (cachesim::indices_per_launch(a.thread_map) != cachesim::indices_per_launch(b.thread_map))
+        same("thread map", a.thread_map, b.thread_map);
     if (base.launches == other.launches) return;
     const bool common = std::any_of(base.launches.begin(), base.launches.end(), [&](std::uint32_t sample) {
         return std::find(other.launches.begin(), other.launches.end(), sample) != other.launches.end();

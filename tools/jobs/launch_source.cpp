@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cachesim/report/origin.hpp"
 #include "tools/jobs/make_ahead.hpp"
 #include "traces/error.hpp"
 #include "traces/read_launch.hpp"
@@ -69,9 +70,9 @@ TraceFiles::TraceFiles(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
         readers.push_back(std::make_unique<traces::Reader>(path));
         const traces::Reader* reader = readers.back().get();
-        sources.push_back(
-            {&reader->header(), tracer::strategy_name(reader->header().provenance),
-             [reader](std::uint32_t launch, const WarpSink& sink) { read_ahead(*reader, launch, sink); }});
+        sources.push_back({&reader->header(), tracer::strategy_name(reader->header().provenance),
+                           [reader](std::uint32_t launch, const WarpSink& sink) { read_ahead(*reader, launch, sink); },
+                           cachesim::indices_per_launch(reader->header().provenance.thread_map)});
     }
 }
 
@@ -81,9 +82,30 @@ std::vector<LaunchSource> sources_of(const std::vector<std::unique_ptr<tracer::C
         const tracer::Capture* capture = owned.get();
         sources.push_back(
             {&capture->header(), tracer::strategy_name(capture->header().provenance),
-             [capture](std::uint32_t launch, const WarpSink& sink) { trace_ahead(*capture, launch, sink); }});
+             [capture](std::uint32_t launch, const WarpSink& sink) { trace_ahead(*capture, launch, sink); },
+             cachesim::indices_per_launch(capture->header().provenance.thread_map)});
     }
     return sources;
+}
+
+JoinedLaunches::JoinedLaunches(LaunchSource of, std::uint32_t count) : header(*of.header), source(of) {
+    const auto launches = static_cast<std::uint32_t>(header.launches.size());
+    const std::uint32_t warps = header.warps_per_launch;
+    header.launches.clear();
+    for (std::uint32_t i = 0; i < launches; i += count) header.launches.push_back(of.header->launches[i]);
+    header.warps_per_launch *= std::min(count, launches);
+    header.kernels_per_launch *= std::min(count, launches);
+    source.header = &header;
+    source.indices = of.indices * count;
+    source.deliver = [of = std::move(of), count, launches, warps](std::uint32_t launch, const WarpSink& sink) {
+        const std::uint32_t begin = launch * count, end = std::min(begin + count, launches);
+        for (std::uint32_t i = begin; i < end; ++i)
+            of.deliver(i, [&](traces::WarpTrace&& warp) {
+                warp.launch = launch;
+                warp.warp += (i - begin) * warps;
+                sink(std::move(warp));
+            });
+    };
 }
 
 void refuse_wavefront(const traces::Header& header, const std::string& path, const char* command) {

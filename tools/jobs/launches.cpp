@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "tools/jobs/windows/launch_extent.hpp"
+#include "tracer/sampling/sampling_strategy.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -23,6 +27,38 @@ std::vector<tracer::CaptureSettings> LaunchSettings::captures() const {
     return capture_settings(scene, sampling, cases);
 }
 
+std::uint32_t pair_launches(std::vector<tracer::CaptureSettings>& captures) {
+    std::uint32_t most = 1, least = ~0U;
+    for (const tracer::CaptureSettings& c : captures) {
+        const std::uint32_t each = launch_grid_of(c).samples_per_launch();
+        most = std::max(most, each);
+        least = std::min(least, each);
+    }
+    if (most <= least) return 1;
+    for (tracer::CaptureSettings& c : captures) {
+        const std::uint64_t spp = c.strategy.samples.spp;
+        c.first_indices.clear();
+        std::vector<std::uint32_t> groups = tracer::choose_sample_indices(
+            (spp + most - 1) / most, (c.trace_samples + most - 1) / most, c.strategy.samples.seed);
+        c.trace_samples = std::min<std::uint64_t>(spp, groups.size() * most);
+        for (const std::uint64_t group : groups)
+            for (std::uint64_t i = group * most; i < std::min(spp, (group + 1) * most);
+                 i += launch_grid_of(c).samples_per_launch())
+                c.first_indices.push_back(static_cast<std::uint32_t>(i));
+    }
+    return most;
+}
+
+std::vector<std::unique_ptr<JoinedLaunches>> join_launches(std::vector<LaunchSource>& sources, std::uint32_t indices) {
+    std::vector<std::unique_ptr<JoinedLaunches>> joined;
+    for (LaunchSource& source : sources) {
+        if (source.indices >= indices) continue;
+        joined.push_back(std::make_unique<JoinedLaunches>(source, indices / source.indices));
+        source = joined.back()->source;
+    }
+    return joined;
+}
+
 Launches::Launches(const LaunchSettings& settings, const FileNames& outputs, Observer& observer)
     : of_traces_(settings.of_traces()) {
     settings.check();
@@ -33,7 +69,8 @@ Launches::Launches(const LaunchSettings& settings, const FileNames& outputs, Obs
         sources_ = files_->sources;
         return;
     }
-    const auto captures = settings.captures();
+    auto captures = settings.captures();
+    const std::uint32_t indices = pair_launches(captures);
     warn_of_strategies(captures, observer);
     scene_ = settings.scene.prepare(outputs, observer);
     for (std::size_t i = 0; i < captures.size(); ++i)
@@ -43,8 +80,9 @@ Launches::Launches(const LaunchSettings& settings, const FileNames& outputs, Obs
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         const tracer::StrategyName& given = settings.cases[i].strategy;
         names_.push_back(to_string(given));
-        sources_[i].strategy.thread_map = given.thread_map;
+        sources_[i].strategy.take_from(given);
     }
+    joined_ = join_launches(sources_, indices);
 }
 
 std::vector<Json> Launches::subject() const {

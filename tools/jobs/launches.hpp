@@ -25,6 +25,14 @@ struct LaunchSettings {
     std::vector<tracer::CaptureSettings> captures() const;
 };
 
+/// Where a launch of some thread maps holds more sample indices than one of others (32 of `samples`): all captures get
+/// the same sample indices, in whole groups of as many, rounded up. Returns the indices of a group, so that launches
+/// can be joined to the same work (JoinedLaunches); 1 where all maps are alike, and then nothing is changed.
+std::uint32_t pair_launches(std::vector<tracer::CaptureSettings>&);
+
+/// Joins launches of sources that hold fewer indices than that, in place. The result must outlive them.
+std::vector<std::unique_ptr<JoinedLaunches>> join_launches(std::vector<LaunchSource>&, std::uint32_t indices);
+
 /// The launches themselves, ready to be delivered, as long as this object lives.
 class Launches {
 public:
@@ -44,6 +52,7 @@ private:
     std::unique_ptr<TraceFiles> files_;
     std::unique_ptr<tracer::PreparedScene> scene_;
     std::vector<std::unique_ptr<tracer::Capture>> captures_;
+    std::vector<std::unique_ptr<JoinedLaunches>> joined_;
     std::vector<LaunchSource> sources_;
 };
 

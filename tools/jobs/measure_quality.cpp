@@ -100,6 +100,34 @@ void find_baselines(const std::string& baseline, std::vector<QualityRow>& rows) 
         }
 }
 
+/// Which rows each is held against at equal error: the first of a baseline's with its N, and its sequence if possible.
+void find_equal_error_baselines(const std::string& baseline, std::vector<QualityRow>& rows) {
+    std::vector<std::string> names = equal_error_baselines();
+    if (!baseline.empty() && std::find(names.begin(), names.end(), baseline) == names.end()) names.push_back(baseline);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+        for (const std::string& name : names) {
+            std::optional<std::size_t> found;
+            for (std::size_t b = rows.size(); b-- > 0;) {
+                const bool same_sequence = rows[b].strategy().sequence == rows[r].strategy().sequence;
+                if (rows[b].strategy().decorrelation != name || rows[b].spp() != rows[r].spp()) continue;
+                if (!found || same_sequence) found = b;
+            }
+            if (found && *found != r) rows[r].equal_error.push_back({*found, {}, {}, {}});
+        }
+}
+
+/// From speed-ups and errors; before the errors lose their pixels.
+void find_equal_errors(std::vector<QualityRow>& rows) {
+    for (QualityRow& row : rows) {
+        row.no_equal_error =
+            no_equal_error(row.errors, tracer::find_decorrelation(row.strategy().decorrelation).independent_pixels);
+        for (EqualError& against : row.equal_error) {
+            against.ratio = tracer::rmse_ratio(row.errors, rows[against.baseline].errors);
+            against.gain = gain_at_equal_error(against.speed_up, against.ratio);
+        }
+    }
+}
+
 void render_at_equal_time(const tracer::PreparedScene& scene, const tracer::Reference& reference,
                           const QualityRequest& request, std::vector<QualityRow>& rows, Observer& observer,
                           QualityPictures& pictures) {
@@ -179,7 +207,9 @@ std::vector<QualityRow> measure_quality(const tracer::PreparedScene& scene, cons
     for (QualityRow& row : rows)
         if (row.baseline) row.ratio = tracer::rmse_ratio(row.errors, rows[*row.baseline].errors);
     if (request.gpu) {
+        if (cachesim::no_time_note(*request.gpu).empty()) find_equal_error_baselines(request.baseline, rows);
         predict_times(scene, request, rows, observer);
+        find_equal_errors(rows);
         if (request.equal_time && cachesim::no_time_note(*request.gpu).empty())
             render_at_equal_time(scene, reference, request, rows, observer, pictures);
     }

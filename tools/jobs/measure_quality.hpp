@@ -9,6 +9,7 @@
 
 #include "cachesim/gpus/gpu.hpp"
 #include "cachesim/report/report.hpp"
+#include "tools/jobs/equal_error.hpp"
 #include "tools/jobs/observer.hpp"
 #include "tools/jobs/outputs.hpp"
 #include "tools/jobs/windows/estimate.hpp"
@@ -27,8 +28,9 @@ struct QualityRequest {
     bool pairs = false;         ///< also find the worst pair of dimensions: one more picture per pair
     bool equal_time = false;    ///< also render at the N that takes as long as the baseline; needs a GPU
     std::optional<cachesim::Gpu> gpu;
-    EstimateSettings estimate;   ///< of the times
-    std::optional<float> clamp;  ///< of each sample's radiance, as RenderSettings::clamp
+    EstimateSettings estimate;                      ///< of the times
+    std::uint32_t time_width = 0, time_height = 0;  ///< of the picture that times are of; 0: that of the cases
+    std::optional<float> clamp;                     ///< of each sample's radiance, as RenderSettings::clamp
 };
 
 /// What remains of the structured error (ErrorMeasures::structured_mse) when dimensions 2 pair and 2 pair + 1 are left
@@ -58,6 +60,9 @@ struct QualityRow {
         tracer::ErrorMeasures errors;
     };
     std::optional<EqualTime> equal_time;
+    std::vector<EqualError>
+        equal_error;             ///< against each of equal_error_baselines() and `baseline`; of a GPU with times
+    std::string no_equal_error;  ///< no_equal_error() of its errors
 
     const tracer::StrategySettings& strategy() const { return settings.strategy; }
     std::uint64_t spp() const { return settings.strategy.samples.spp; }

@@ -1,6 +1,7 @@
 // The machine-readable forms of a QualityReport.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,10 @@ using Json = nlohmann::ordered_json;
 
 Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json optional(const std::optional<double>& value) { return value ? json_number(*value) : Json(nullptr); }
+Json estimate_json(const cachesim::Estimate& e) {
+    if (!std::isfinite(e.mean)) return nullptr;
+    return {{"mean", e.mean}, {"half_width_95", optional(e.half_width)}};
+}
 /// `below`: the reference's noise hides the figure; it is less than that.
 Json measured(const tracer::Measured& m) {
     return {
@@ -75,10 +80,19 @@ Json row_json(const QualityRow& row, const std::vector<QualityRow>& all) {
     if (row.timing) {
         json["predicted_seconds"] = json_number(row.timing->seconds);
         const auto& up = row.timing->speed_up;
-        json["speed_up"] = up ? Json{{"mean", json_number(up->mean)},
-                                     {"half_width_95", up->half_width ? json_number(*up->half_width) : Json(nullptr)}}
-                              : Json(nullptr);
+        json["speed_up"] = up ? estimate_json(*up) : Json(nullptr);
     }
+    for (const EqualError& against : row.equal_error) {
+        const Json by_rmse = estimate_json(against.gain);
+        json["equal_error"].push_back({{"baseline", label(all[against.baseline], all)},
+                                       {"speed_up", estimate_json(against.speed_up)},
+                                       {"rmse_ratio", json_number(against.ratio.value.value)},
+                                       {"rmse_ratio_half_width_95", json_number(against.ratio.value.half_width)},
+                                       {"gain_by_rmse", by_rmse},
+                                       {"gain", row.no_equal_error.empty() ? by_rmse : Json(nullptr)}});
+    }
+    if (!row.equal_error.empty())
+        json["no_equal_error"] = row.no_equal_error.empty() ? Json(nullptr) : Json(row.no_equal_error);
     if (row.equal_time) {
         json["equal_time"] = {{"spp", row.equal_time->spp}};
         json["equal_time"].update(errors_json(row.equal_time->errors, row.settings.width));
@@ -118,6 +132,7 @@ std::string to_json(const QualityReport& report, const Recommendation* recommend
               {"height", report.height},
               {"baseline", report.baseline},
               {"gpu", report.gpu.empty() ? Json(nullptr) : Json(report.gpu)},
+              {"time_resolution", report.time_resolution.empty() ? Json(nullptr) : Json(report.time_resolution)},
               {"repeats", report.repeats},
               {"clamp", report.clamp ? json_number(*report.clamp) : Json(nullptr)},
               {"reference",
@@ -136,7 +151,12 @@ std::string to_csv(const QualityReport& report) {
         "scene,strategy,sequence,parameters,mu,spp,rmse,rmse_ci95,rmse_below,rmse_ratio,rmse_ratio_ci95,"
         "rmse_ratio_below,rmse_ratio_above,decided_by_pixels,robust_rmse,robust_rmse_ratio,relative_rmse,r8,r8_ci95,"
         "r8_below,block_rmse,mean_error,mean_error_ci95,z_pixels,z_seeds,worst_pair,worst_pair_share,gpu,"
-        "predicted_seconds,speed_up,speed_up_ci95,equal_time_spp,equal_time_rmse,equal_time_r8\n";
+        "predicted_seconds,speed_up,speed_up_ci95,equal_time_spp,equal_time_rmse,equal_time_r8,no_equal_error";
+    for (std::string name : equal_error_baselines()) {
+        std::replace(name.begin(), name.end(), '-', '_');
+        text += fmt::format(",gain_{0},gain_{0}_ci95", name);
+    }
+    text += "\n";
     const double none = std::nan("");
     for (const QualityRow& row : report.rows) {
         const tracer::ErrorMeasures& e = row.errors;
@@ -158,9 +178,17 @@ std::string to_csv(const QualityReport& report) {
                             field(speed_up ? speed_up->mean : none),
                             field(speed_up && speed_up->half_width ? *speed_up->half_width : none));
         const auto& same = row.equal_time;
-        text +=
-            same ? fmt::format(",{},{},{}\n", same->spp, field(same->errors.rmse.value), field(same->errors.r8.value))
-                 : std::string(",,,\n");
+        text += same ? fmt::format(",{},{},{}", same->spp, field(same->errors.rmse.value), field(same->errors.r8.value))
+                     : std::string(",,,");
+        text += "," + field(row.equal_error.empty() ? std::string() : row.no_equal_error);
+        for (const std::string& name : equal_error_baselines()) {
+            cachesim::Estimate gain{none, std::nullopt};
+            for (const EqualError& against : row.equal_error)
+                if (report.rows[against.baseline].strategy().decorrelation == name && row.no_equal_error.empty())
+                    gain = against.gain;
+            text += fmt::format(",{},{}", field(gain.mean), field(gain.half_width.value_or(none)));
+        }
+        text += "\n";
     }
     return text;
 }

@@ -7,9 +7,9 @@ namespace raycache::tools {
 
 template <>
 struct EnumNames<tracer::ThreadMap> {
-    static constexpr std::array all{std::pair{tracer::ThreadMap::tile, "tile"},
-                                    std::pair{tracer::ThreadMap::samples, "samples"},
-                                    std::pair{tracer::ThreadMap::classes, "classes"}};
+    static constexpr std::array all{
+        std::pair{tracer::ThreadMap::tile, "tile"}, std::pair{tracer::ThreadMap::samples, "samples"},
+        std::pair{tracer::ThreadMap::rows, "rows"}, std::pair{tracer::ThreadMap::classes, "classes"}};
 };
 
 template <>
@@ -165,12 +165,25 @@ struct Fields<QualityRow::EqualTime> {
 };
 
 template <>
+struct Fields<EqualError> {
+    using S = EqualError;
+    static constexpr std::tuple all{Field{"baseline", &S::baseline}, Field{"speed_up", &S::speed_up},
+                                    Field{"ratio", &S::ratio}, Field{"gain", &S::gain}};
+};
+
+template <>
 struct Fields<QualityRow> {
     using S = QualityRow;
-    static constexpr std::tuple all{Field{"settings", &S::settings}, Field{"parameters", &S::parameters},
-                                    Field{"errors", &S::errors},     Field{"baseline", &S::baseline},
-                                    Field{"ratio", &S::ratio},       Field{"pairs", &S::pairs},
-                                    Field{"timing", &S::timing},     Field{"equal_time", &S::equal_time}};
+    static constexpr std::tuple all{Field{"settings", &S::settings},
+                                    Field{"parameters", &S::parameters},
+                                    Field{"errors", &S::errors},
+                                    Field{"baseline", &S::baseline},
+                                    Field{"ratio", &S::ratio},
+                                    Field{"pairs", &S::pairs},
+                                    Field{"timing", &S::timing},
+                                    Field{"equal_time", &S::equal_time},
+                                    Field{"equal_error", &S::equal_error},
+                                    Field{"no_equal_error", &S::no_equal_error}};
 };
 
 template <>
@@ -179,6 +192,7 @@ struct Fields<QualityReport> {
     static constexpr std::tuple all{Field{"scene", &S::scene},
                                     Field{"baseline", &S::baseline},
                                     Field{"gpu", &S::gpu},
+                                    Field{"time_resolution", &S::time_resolution},
                                     Field{"reference_path", &S::reference_path},
                                     Field{"reference_spp", &S::reference_spp},
                                     Field{"repeats", &S::repeats},

@@ -49,6 +49,11 @@ QualityRequest QualityJob::request() const {
     request.clamp = clamp;
     request.estimate = estimate;
     request.estimate.baseline = baseline;
+    if (!time_resolution.empty()) {
+        const Resolution size = parse_resolution(time_resolution);
+        request.time_width = size.width;
+        request.time_height = size.height;
+    }
     estimate.check();
     const auto is_wavefront = [](const tracer::CaptureSettings& c) {
         return c.execution.execution != tracer::Execution::megakernel;
@@ -83,6 +88,7 @@ QualityResult run(const QualityJob& job, const std::optional<cachesim::Gpu>& gpu
     report.scene = scene->scene().name;
     report.baseline = job.baseline;
     report.gpu = gpu ? gpu->name : "";
+    if (gpu && !job.time_resolution.empty()) report.time_resolution = job.time_resolution;
     if (gpu) report.subject.gpus = {gpu_json(*gpu)};
     report.reference_spp = job.reference_spp;
     report.repeats = job.repeats;

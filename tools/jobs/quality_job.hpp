@@ -20,12 +20,13 @@ struct QualityJob {
     std::string baseline;             ///< strategy that ratios refer to; empty: none
     std::uint64_t reference_spp = 1024;
     std::string reference_strategy = "random";
-    std::string reference_file;  ///< .exr that keeps the reference; empty: the user's cache folder
-    std::uint64_t repeats = 1;   ///< pictures of each case, with seeds one after the other
-    std::optional<float> clamp;  ///< radiance that no channel of a sample exceeds
-    bool pairs = false;          ///< find the worst pair of dimensions
-    bool equal_time = false;     ///< also at the N that takes as long as the baseline; needs a GPU
-    EstimateSettings estimate;   ///< of predicted times; of speed-ups over `baseline`
+    std::string reference_file;   ///< .exr that keeps the reference; empty: the user's cache folder
+    std::uint64_t repeats = 1;    ///< pictures of each case, with seeds one after the other
+    std::optional<float> clamp;   ///< radiance that no channel of a sample exceeds
+    bool pairs = false;           ///< find the worst pair of dimensions
+    bool equal_time = false;      ///< also at the N that takes as long as the baseline; needs a GPU
+    EstimateSettings estimate;    ///< of predicted times; of speed-ups over `baseline`
+    std::string time_resolution;  ///< of the picture that times are of, "1920x1080"; empty: that of the pictures
 
     /// What is measured, without a GPU. Throws UsageError for settings that make no sense.
     QualityRequest request() const;

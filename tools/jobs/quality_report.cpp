@@ -40,6 +40,37 @@ std::string speed_up_cell(const QualityRow& row) {
     return tracer::measured_text({up->mean, up->half_width.value_or(std::nan("")), {}, {}, 0}, 3);
 }
 
+/// Of the rows, the names of those that some row is held against at equal error, in the order of the registry.
+std::vector<std::string> equal_error_columns(const std::vector<QualityRow>& rows) {
+    std::vector<std::string> names;
+    for (const QualityRow& row : rows)
+        for (const EqualError& against : row.equal_error) {
+            const std::string& name = rows[against.baseline].strategy().decorrelation;
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
+    return names;
+}
+
+std::string equal_error_cell(const QualityRow& row, const std::vector<QualityRow>& rows, const std::string& name) {
+    for (const EqualError& against : row.equal_error) {
+        if (rows[against.baseline].strategy().decorrelation != name) continue;
+        if (!row.no_equal_error.empty()) return "none";
+        if (!std::isfinite(against.gain.mean)) return "-";
+        return tracer::measured_text({against.gain.mean, against.gain.half_width.value_or(std::nan("")), {}, {}, 0}, 3);
+    }
+    return row.strategy().decorrelation == name ? "1" : "-";
+}
+
+/// "1.27 x cranley-patterson's": what its RMSE alone would say.
+std::string gains_by_rmse(const QualityRow& row, const std::vector<QualityRow>& rows) {
+    std::string text;
+    for (const EqualError& against : row.equal_error)
+        if (std::isfinite(against.gain.mean))
+            text += fmt::format("{}{:.3f} x {}", text.empty() ? "" : ", ", against.gain.mean,
+                                rows[against.baseline].strategy().decorrelation);
+    return text.empty() ? text : "; by its RMSE alone " + text;
+}
+
 template <class Value>
 bool differ(const std::vector<QualityRow>& rows, const Value& value) {
     return std::any_of(rows.begin(), rows.end(), [&](const QualityRow& r) { return value(r) != value(rows.front()); });
@@ -65,6 +96,19 @@ std::string label(const QualityRow& row, const std::vector<QualityRow>& all) {
     if (row.strategy().parameters.has("mu") &&
         differ(all, [](const QualityRow& r) { return r.strategy().parameters.number("mu"); }))
         text += fmt::format(" mu={:.4g}", *row.strategy().parameters.number("mu"));
+    const tracer::DecorrelationEntry& entry = tracer::find_decorrelation(row.strategy().decorrelation);
+    for (const tracer::ParameterEntry& parameter : entry.parameters) {
+        const std::string name = parameter.name;
+        if (name == "mu" || !entry.reads_parameter(name, row.strategy().parameters)) continue;
+        const auto other = [&](const QualityRow& r) {
+            return r.strategy().decorrelation == entry.name &&
+                   r.strategy().parameters.text(name) != row.strategy().parameters.text(name);
+        };
+        if (std::any_of(all.begin(), all.end(), other))
+            text += fmt::format(" {}={}", name, row.strategy().parameters.text(name));
+    }
+    if (differ(all, [](const QualityRow& r) { return r.settings.thread_map; }))
+        text += std::string("@") + to_string(row.settings.thread_map);
     return text;
 }
 
@@ -95,6 +139,9 @@ void add_notes(QualityReport& report) {
         if (row.ratio && row.ratio->decided_by_pixels)
             note(fmt::format("{}: its RMSE against {}'s is {}: no ranking; use --clamp, or the robust error", name,
                              report.baseline, tracer::ratio_text(*row.ratio)));
+        if (!row.no_equal_error.empty() && !row.equal_error.empty())
+            note(fmt::format("{}: no time to an equal error: {}{}", name, row.no_equal_error,
+                             gains_by_rmse(row, report.rows)));
         if (row.ratio && row.ratio->baseline_is_zero) note(fmt::format("ratio {}", tracer::ratio_text(*row.ratio)));
         if (row.strategy().decorrelation == "scrambling-distance" && !row.strategy().parameters.has("mu"))
             note(
@@ -122,6 +169,8 @@ std::string to_text(const QualityReport& report, std::size_t width) {
     column("worst 8x8 %", 6);
     if (pairs) column("worst pair", 1);
     if (timed) column("speed-up");
+    const std::vector<std::string> equal_error = equal_error_columns(report.rows);
+    for (const std::string& name : equal_error) column(("equal error " + name).c_str(), 1);
     if (equal_time) {
         column("N equal time", 1);
         column("RMSE there", 1);
@@ -142,6 +191,7 @@ std::string to_text(const QualityReport& report, std::size_t width) {
                 worst ? fmt::format("{},{}: {:.0f} %", 2 * worst->pair, 2 * worst->pair + 1, 100 * worst->share) : "-");
         }
         if (timed) cells.push_back(speed_up_cell(row));
+        for (const std::string& name : equal_error) cells.push_back(equal_error_cell(row, report.rows, name));
         if (equal_time)
             cells.insert(cells.end(), {fmt::format("{}", row.equal_time->spp),
                                        tracer::measured_text(row.equal_time->errors.rmse, 4, true)});
@@ -174,7 +224,13 @@ std::string to_text(const QualityReport& report, std::size_t width) {
             "none "
             "lowers it)";
     if (timed && any([](const QualityRow& r) { return r.timing && std::isfinite(r.timing->seconds); }))
-        text += fmt::format("\nspeed-up: predicted for {}", report.gpu);
+        text += fmt::format("\nspeed-up: predicted for {}{}", report.gpu,
+                            report.time_resolution.empty() ? "" : " at " + report.time_resolution);
+    if (!equal_error.empty())
+        text += fmt::format(
+            "\nequal error NAME: predicted time of NAME to the same RMSE over the row's: speed-up over it / RMSE ratio "
+            "to it^2; none: R8 above {} or bias (z above {}), so the error does not fall with N",
+            most_shared_error, most_bias);
     if (equal_time) text += "; N equal time: what fits into the baseline's time";
     text += "\n";
     for (const std::string& note : report.notes) text += "note: " + note + "\n";

@@ -12,6 +12,7 @@ namespace raycache::tools {
 
 struct QualityReport {
     std::string scene, baseline, gpu;  ///< gpu: empty where no time was predicted
+    std::string time_resolution;       ///< of the picture that times are of; empty: that of the pictures
     std::string reference_path;        ///< empty where it is not kept
     std::uint64_t reference_spp = 0, repeats = 1;
     std::optional<float> clamp;

@@ -19,8 +19,9 @@ void say_resumable(const ReplayJob& job, Observer& observer) {
 void say_costs(const ReplayJob& job, std::size_t gpus, Observer& observer) {
     if (job.launches.of_traces()) return;
     double seconds = 0;
-    for (const auto& s : job.launches.captures())
-        seconds += trace_cost(s) + static_cast<double>(gpus) * replay_cost(s, job.timed);
+    auto captures = job.launches.captures();
+    pair_launches(captures);
+    for (const auto& s : captures) seconds += trace_cost(s) + static_cast<double>(gpus) * replay_cost(s, job.timed);
     observer.expect("replay", job.timed ? Work::timed_replay : Work::replay, seconds);
 }
 

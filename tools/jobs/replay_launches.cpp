@@ -61,7 +61,8 @@ cachesim::Origin origin_of(const LaunchSource& source, const cachesim::Gpu& gpu)
     return {p.scene,      to_string(source.strategy),
             p.sequence,   p.parameters,
             p.thread_map, gpu.name,
-            p.spp,        {gpu.levels.size(), gpu.l1().sector_bytes}};
+            p.spp,        {gpu.levels.size(), gpu.l1().sector_bytes},
+            {},           source.indices};
 }
 
 std::vector<cachesim::Series> replay(const std::vector<LaunchSource>& sources, const std::vector<cachesim::Gpu>& gpus,

@@ -65,6 +65,8 @@ public:
         expect(r.report.width > 0 && r.report.height > 0, "a picture of at least one pixel");
         for (const QualityRow& row : r.report.rows) {
             expect(!row.baseline || *row.baseline < r.report.rows.size(), "a baseline among the rows");
+            for (const EqualError& against : row.equal_error)
+                expect(against.baseline < r.report.rows.size(), "a baseline at equal error among the rows");
             expect(row.settings.width == r.report.width, "rows of the picture's width");
             check(row.errors);
             if (row.equal_time) check(row.equal_time->errors);

@@ -101,7 +101,8 @@ struct Fields<cachesim::Origin> {
                                     Field{"gpu", &S::gpu},
                                     Field{"spp", &S::spp},
                                     Field{"caches", &S::caches},
-                                    Field{"windows", &S::windows}};
+                                    Field{"windows", &S::windows},
+                                    Field{"indices", &S::indices}};
 };
 
 template <>

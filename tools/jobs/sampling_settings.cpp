@@ -64,6 +64,19 @@ std::string path_command(const SamplingSettings& sampling) {
     return text;
 }
 
+/// A parameter in the name that nothing reads is a mistake: two rows would be alike.
+void check_own_parameters(const tracer::StrategyName& name, const tracer::Parameters& given) {
+    const tracer::DecorrelationEntry& entry = tracer::find_decorrelation(name.decorrelation);
+    for (const std::string& own : name.parameters) {
+        const std::string parameter = own.substr(0, own.find('='));
+        if (entry.reads_parameter(parameter, given)) continue;
+        throw UsageError(
+            fmt::format("strategy '{}': {} has no effect beside the other parameters given, which take its "
+                        "place; leave out one of them",
+                        to_string(name), parameter));
+    }
+}
+
 }  // namespace
 
 Resolution parse_resolution(const std::string& text) {
@@ -140,6 +153,11 @@ SamplingSettings of_case(SamplingSettings sampling, const CaseSettings& one) {
     };
     replace("k", one.k, sampling.k);
     replace("mu", one.mu, sampling.mu);
+    for (const std::string& own : one.strategy.parameters) {
+        const std::string prefix = own.substr(0, own.find('=') + 1);
+        std::erase_if(sampling.parameters, [&](const std::string& given) { return given.starts_with(prefix); });
+        sampling.parameters.push_back(own);
+    }
     return sampling;
 }
 
@@ -163,6 +181,7 @@ tracer::CaptureSettings capture_settings(const SceneSettings& scene, const Sampl
     settings.paths = sampling.paths();
     tracer::check_execution(settings.execution, tracer::integrator_entry(settings.paths.integrator));
     settings.strategy = sampling.strategy(one.sequence, decorrelation, one.spp);
+    check_own_parameters(one.strategy, settings.strategy.parameters);
     settings.trace_samples = sampling.trace_samples;
     settings.thread_map = tracer::thread_map_of(one.strategy, sampling.thread_map);
     settings.program = program_name;

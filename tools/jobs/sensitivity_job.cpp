@@ -220,8 +220,11 @@ SensitivityResult run(const SensitivityJob& job, Observer& observer) {
         warn_of_strategies(job.launches.captures(), observer);
         const auto scene = job.launches.scene.prepare({}, observer);
         std::vector<WindowedCase> cases;
-        for (const WindowedStrategy& strategy : strategies_of(job.launches)) {
-            const WindowedCase& c = cases.emplace_back(make_case(*scene, strategy, sizes_of_windows(), 0, job.windows));
+        const std::vector<WindowedStrategy> strategies = strategies_of(job.launches);
+        const std::uint32_t grain = common_indices(strategies);
+        for (const WindowedStrategy& strategy : strategies) {
+            const WindowedCase& c =
+                cases.emplace_back(make_case(*scene, strategy, sizes_of_windows(), 0, job.windows, grain));
             add_regions(c.capture->header());
             names.push_back({c.name});
             result.subject.traces.push_back(c.subject(job.windows));

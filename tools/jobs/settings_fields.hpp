@@ -175,7 +175,8 @@ struct Fields<QualityJob> {
                                     Field{"clamp", &S::clamp},
                                     Field{"pairs", &S::pairs},
                                     Field{"equal_time", &S::equal_time},
-                                    Field{"estimate", &S::estimate}};
+                                    Field{"estimate", &S::estimate},
+                                    Field{"time_resolution", &S::time_resolution}};
 };
 
 }  // namespace raycache::tools

@@ -16,6 +16,7 @@
 #include "tools/program/program.hpp"
 #include "tools/program/report_options.hpp"
 #include "tools/program/steady_options.hpp"
+#include "tracer/strategy_groups.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -42,7 +43,7 @@ std::vector<CaseSettings> cases_of(const CompareArguments& o) {
     std::set<std::string> seen;
     for (const std::string& sequence : o.sequences)
         for (const std::uint64_t spp : o.spp)
-            for (const std::string& strategy : o.strategies)
+            for (const std::string& strategy : tracer::expand_groups(o.strategies))
                 for (const std::string& k : o.ks)
                     for (const std::string& layout : o.layouts) {
                         CaseSettings one{tracer::parse_strategy_name(strategy), sequence, spp, k, {}};
@@ -70,6 +71,7 @@ Action plan(const std::shared_ptr<CompareArguments>& o, const Command* command) 
         job.launches.scene = o->scene;
         job.launches.sampling = o->sampling;
         job.launches.cases = cases_of(*o);
+        if (o->report.baseline.empty()) o->report.baseline = tracer::baseline_of_groups(o->strategies).value_or("");
     }
     std::string why_exact;
     job.estimate = o->estimate.settings(*command, job.launches, why_exact);
@@ -142,7 +144,10 @@ void add_compare(Program& program) {
          "raycache compare sponza.glb --strategy cranley-patterson,micro-jitter --spp 1024 --gpu rtx-3070 "
          "--l1-kib 128,256 --across-gpus",
          "raycache compare sponza.glb --spp 1024 --gpu rtx-3070 --fidelity auto --target-error 2%",
-         "raycache compare courtyard --spp 64 --gpu rtx-3070 --timed --cold-launches 1 --resolution 320x180"});
+         "raycache compare courtyard --spp 64 --gpu rtx-3070 --timed --cold-launches 1 --resolution 320x180",
+         "raycache compare sponza.glb --strategy cycles --spp 256 --gpu rtx-3070 --timed",
+         "raycache compare courtyard --strategy owen@samples,scrambling-distance:mu=0.2@rows,cranley-patterson@tile "
+         "--gpu rtx-3070"});
     command->plan([o, command] { return plan(o, command); });
 }
 

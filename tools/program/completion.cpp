@@ -17,6 +17,7 @@
 #include "tracer/scene/scene.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "tracer/strategy_groups.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -42,8 +43,10 @@ const std::map<std::string, Candidates>& known() {
                                        scenes = listed_names(tracer::builtin_scenes());
         const Candidates any_file{{}, {"*"}}, traces{{}, {"rct"}}, scene{scenes, {"glb", "gltf"}},
             trace_or_scene{scenes, {"rct", "glb", "gltf"}}, strategy{strategies, {}};
+        std::vector<std::string> with_groups = strategies;
+        for (const std::string& group : listed_names(tracer::strategy_groups())) with_groups.push_back(group);
         return std::map<std::string, Candidates>{
-            {"--strategy", strategy},
+            {"--strategy", {with_groups, {}}},
             {"--baseline", strategy},
             {"--swept", strategy},
             {"--reference-strategy", strategy},
@@ -66,7 +69,9 @@ const std::map<std::string, Candidates>& known() {
             {"--level", {{"l1", "l2", "l3"}, {}}},
             {"--table", {samples_table_names(), {}}},
             {"TOPIC",
-             {{"strategies", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders", "scenes"}, {}}},
+             {{"strategies", "groups", "sequences", "gpus", "layouts", "integrators", "thread-maps", "orders",
+               "scenes"},
+              {}}},
             {"--output", any_file},
             {"--gpu-package", any_file},
             {"--save", any_file},

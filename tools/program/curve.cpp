@@ -11,6 +11,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/table_output.hpp"
+#include "tracer/strategy_groups.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -55,7 +56,7 @@ Action plan(const std::shared_ptr<CurveArguments>& o, const Command* command) {
         job.launches.scene = o->scene;
         job.launches.sampling = o->sampling;
         for (const std::uint64_t spp : o->spp)
-            for (const std::string& strategy : o->strategies)
+            for (const std::string& strategy : tracer::expand_groups(o->strategies))
                 job.launches.cases.push_back(
                     {tracer::parse_strategy_name(strategy, curve_parts), o->sequence, spp, {}, {}});
     }

@@ -14,6 +14,7 @@
 #include "tools/program/program.hpp"
 #include "tools/program/width_option.hpp"
 #include "tracer/drawing.hpp"
+#include "tracer/strategy_groups.hpp"
 
 namespace raycache::tools {
 namespace {
@@ -72,7 +73,7 @@ Action plan(const std::shared_ptr<ExplainArguments>& o, const Command* command) 
     if (!job.launches.of_traces()) {
         job.launches.scene = o->scene;
         job.launches.sampling = o->sampling;
-        for (const std::string& strategy : o->strategies)
+        for (const std::string& strategy : tracer::expand_groups(o->strategies))
             job.launches.cases.push_back({tracer::parse_strategy_name(strategy, parts), o->sequence, o->spp, {}, {}});
     }
     std::string why_exact;

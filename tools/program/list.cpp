@@ -1,5 +1,6 @@
 // raycache list: every name that another subcommand takes.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,7 @@
 #include "tracer/scene/scene.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
 #include "tracer/simt/thread_map.hpp"
+#include "tracer/strategy_groups.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -62,13 +64,22 @@ std::vector<Entry> figures_of(const List& list) {
     return entries;
 }
 
+std::vector<Entry> group_entries() {
+    std::vector<Entry> entries;
+    for (const tracer::StrategyGroup& group : tracer::strategy_groups())
+        entries.push_back({group.name,
+                           fmt::format("{} [{}]", group.description, fmt::join(group.members, ", ")),
+                           {{"strategies", group.members}}});
+    return entries;
+}
+
 std::vector<Topic> all_topics() {
-    return {
-        {"strategies", entries_of(tracer::decorrelations())}, {"sequences", entries_of(tracer::sequences())},
-        {"gpus", entries_of(cachesim::gpu_presets())},        {"layouts", entries_of(tracer::bvh_layouts())},
-        {"integrators", entries_of(tracer::integrators())},   {"thread-maps", entries_of(tracer::thread_maps())},
-        {"orders", entries_of(tracer::ray_orders())},         {"scenes", entries_of(tracer::builtin_scenes())},
-        {"figures", figures_of(cachesim::traffic_figures)},   {"timed-figures", figures_of(cachesim::timed_figures)}};
+    return {{"strategies", entries_of(tracer::decorrelations())},  {"groups", group_entries()},
+            {"sequences", entries_of(tracer::sequences())},        {"gpus", entries_of(cachesim::gpu_presets())},
+            {"layouts", entries_of(tracer::bvh_layouts())},        {"integrators", entries_of(tracer::integrators())},
+            {"thread-maps", entries_of(tracer::thread_maps())},    {"orders", entries_of(tracer::ray_orders())},
+            {"scenes", entries_of(tracer::builtin_scenes())},      {"figures", figures_of(cachesim::traffic_figures)},
+            {"timed-figures", figures_of(cachesim::timed_figures)}};
 }
 
 /// Entries of a topic that `raycache list` shows without being asked for it; of more it says how many there are.
@@ -123,15 +134,15 @@ void run(const ListArguments& o) {
 void add_list(Program& program) {
     auto o = std::make_shared<ListArguments>();
     Command* command = program.add_subcommand("list",
-                                              "List strategies, sequences, GPUs, layouts, integrators, thread maps, "
-                                              "ray orders, built-in scenes, figures of reports");
+                                              "List strategies, groups of them, sequences, GPUs, layouts, integrators, "
+                                              "thread maps, ray orders, built-in scenes, figures of reports");
     std::vector<std::string> topics;
     for (const Topic& topic : all_topics()) topics.push_back(topic.name);
     command
         ->add_option(
             "TOPIC", o->topic,
-            "strategies, sequences, gpus, layouts, integrators, thread-maps, orders, scenes, figures or timed-figures; "
-            "default: all")
+            "strategies, groups, sequences, gpus, layouts, integrators, thread-maps, orders, scenes, figures or "
+            "timed-figures; default: all")
         ->choices("topic", topics);
     o->json.add(*command);
     o->width.add(*command);

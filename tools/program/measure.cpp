@@ -11,6 +11,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/table_output.hpp"
+#include "tracer/strategy_groups.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -82,7 +83,7 @@ Action plan(const std::shared_ptr<MeasureArguments>& o, const Command* command) 
     job.sampling = o->sampling;
     for (const std::string& sequence : o->sequences)
         for (const std::uint64_t spp : o->spp)
-            for (const std::string& strategy : o->strategies)
+            for (const std::string& strategy : tracer::expand_groups(o->strategies))
                 job.cases.push_back({tracer::parse_strategy_name(strategy, measure_parts), sequence, spp, {}, {}});
     job.baseline = o->baseline;
     job.modes = o->modes;

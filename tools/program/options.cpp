@@ -14,6 +14,7 @@
 #include "tracer/sampling/sequence.hpp"
 #include "tracer/scene/scene_name.hpp"
 #include "tracer/simt/orders/ray_order.hpp"
+#include "tracer/strategy_groups.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -46,7 +47,14 @@ Option* add_strategies(Command& command, std::vector<std::string>& strategies, t
         help += "; NAME+wavefront or NAME+ORDER runs one as a wavefront, without sorting or with its rays sorted so";
     if (parts.thread_map) help += "; NAME@MAP has a thread map of its own";
     if (parts.layout) help += "; NAME/LAYOUT walks a BVH in a layout of its own";
-    return command.add_option("--strategy", strategies, help)->check(strategy_name_check(parts))->about_scene();
+    if (parts.parameters) help += "; NAME:PARAMETER=VALUE has a parameter of its own";
+    const bool groups = parts.thread_map && parts.parameters;
+    if (groups) help += "; or a group of them (see 'raycache list groups')";
+    return command.add_option("--strategy", strategies, help)
+        ->check([one = strategy_name_check(parts), groups](std::string& text) {
+            if (!groups || !tracer::find_strategy_group(text)) one(text);
+        })
+        ->about_scene();
 }
 
 Option* add_sequences(Command& command, std::vector<std::string>& sequences) {

@@ -41,6 +41,12 @@ void QualityOptions::add(Command& command, bool require_gpu) {
         ->count(1)
         ->required(require_gpu);
     gpu.add_changes(command);
+    command
+        .add_option("--time-resolution", time_resolution,
+                    "picture whose time is predicted, where it is larger than those whose error is measured: a small "
+                    "one does not fill a GPU; default: --resolution")
+        ->type_name("WxH")
+        ->default_text("");
     scene.add_view(command);
     sampling.add_launches(command);
     sampling.add_picture(command);
@@ -58,6 +64,7 @@ QualityJob QualityOptions::job() const {
     job.scene = scene;
     job.sampling = sampling;
     job.gpu = gpu;
+    job.time_resolution = time_resolution;
     job.reference_spp = reference_spp;
     job.reference_strategy = reference_strategy;
     job.reference_file = reference_file;
@@ -69,6 +76,8 @@ QualityJob QualityOptions::job() const {
 QualityResult QualityOptions::measure(const Command& command, const QualityJob& job, const FileNames& outputs,
                                       Deliveries& deliveries, Progress& progress) const {
     if (json && csv) throw UsageError("--json and --csv together; expected one of them");
+    if (gpu.names.empty() && !time_resolution.empty())
+        throw UsageError("--time-resolution without --gpu; expected both: without a GPU no time is predicted");
     std::optional<cachesim::Gpu> loaded;
     if (!gpu.names.empty()) {
         loaded = gpu.load_one(outputs, command.name());

@@ -23,7 +23,7 @@ struct QualityOptions {
     ThreadOptions threads;
     std::uint64_t reference_spp = 1024, repeats = 1;
     std::optional<float> clamp;
-    std::string reference_file, reference_strategy = "random";
+    std::string reference_file, reference_strategy = "random", time_resolution;
 
     /// `require_gpu`: --gpu must be given; else it may be.
     void add(Command&, bool require_gpu);

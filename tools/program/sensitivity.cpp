@@ -11,6 +11,7 @@
 #include "tools/program/options.hpp"
 #include "tools/program/program.hpp"
 #include "tools/program/table_output.hpp"
+#include "tracer/strategy_groups.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tools {
@@ -36,7 +37,7 @@ SensitivityJob job_of(const SensitivityArguments& o, const Command& command) {
     job.whole_launches = command.find_option("--trace-samples")->given();
     if (!job.whole_launches && !command.find_option("--resolution")->given())
         job.launches.sampling.resolution = window_resolution;
-    for (const std::string& strategy : o.strategies)
+    for (const std::string& strategy : tracer::expand_groups(o.strategies))
         job.launches.cases.push_back({tracer::parse_strategy_name(strategy), o.sequence, o.spp, {}, {}});
     job.gpus = o.gpu.names;
     job.changes = o.gpu.changes;

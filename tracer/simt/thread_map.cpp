@@ -1,10 +1,12 @@
 #include "tracer/simt/thread_map.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 
+#include "traces/did_you_mean.hpp"
 #include "traces/error.hpp"
 
 namespace raycache::tracer {
@@ -21,6 +23,7 @@ const std::vector<ThreadMapEntry>& thread_maps() {
     static const std::vector<ThreadMapEntry> all{
         {ThreadMap::tile, "tile", "a warp = 8x4 neighbouring pixels, one sample index"},
         {ThreadMap::samples, "samples", "a warp = one pixel, 32 consecutive sample indices"},
+        {ThreadMap::rows, "rows", "a warp = 32 neighbouring pixels of a row (32x1), one sample index"},
         {ThreadMap::classes, "classes",
          "a warp = 8x4 pixels of one class of --interleave M, M pixels apart, one sample index"}};
     return all;
@@ -29,12 +32,16 @@ const std::vector<ThreadMapEntry>& thread_maps() {
 ThreadMap thread_map_from(const std::string& name) {
     for (const ThreadMapEntry& entry : thread_maps())
         if (name == entry.name) return entry.map;
-    throw UsageError(fmt::format("unknown thread map '{}'; expected one of: tile, samples, classes", name));
+    std::vector<std::string> valid;
+    for (const ThreadMapEntry& entry : thread_maps()) valid.push_back(entry.name);
+    throw UsageError(fmt::format("unknown thread map '{}'; expected one of: {}{}", name, fmt::join(valid, ", "),
+                                 did_you_mean(name, valid)));
 }
 
 const char* to_string(ThreadMap map) {
-    if (map == ThreadMap::tile) return "tile";
-    return map == ThreadMap::samples ? "samples" : "classes";
+    for (const ThreadMapEntry& entry : thread_maps())
+        if (map == entry.map) return entry.name.c_str();
+    return "";
 }
 
 LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height, std::uint64_t spp,
@@ -57,11 +64,13 @@ LaunchGrid::LaunchGrid(ThreadMap map, std::uint32_t width, std::uint32_t height,
     const std::uint32_t squares = squares_across_ * ((height + span - 1) / span);
     warps_per_class_ = squares * (map == ThreadMap::samples ? pixels_per_square : tiles_per_square);
     warps_ = warps_per_class_ * interleave_ * interleave_;
+    if (map == ThreadMap::rows)
+        warps_ = warps_per_class_ = (width * height + traces::warp_lanes - 1) / traces::warp_lanes;
 }
 
 std::optional<LaunchGrid> LaunchGrid::from_name(const std::string& name, std::uint32_t width, std::uint32_t height,
                                                 std::uint64_t spp) {
-    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples})
+    for (const ThreadMap map : {ThreadMap::tile, ThreadMap::samples, ThreadMap::rows})
         if (name == to_string(map)) return LaunchGrid(map, width, height, spp);
     const std::string prefix = to_string(ThreadMap::classes) + std::string(":");
     if (!name.starts_with(prefix)) return std::nullopt;
@@ -77,7 +86,18 @@ std::string LaunchGrid::name() const {
     return map_ == ThreadMap::classes ? fmt::format("{}:{}", to_string(map_), interleave_) : to_string(map_);
 }
 
+WarpJobs LaunchGrid::row_jobs(std::uint32_t warp, std::uint32_t sample) const {
+    WarpJobs out;
+    for (std::uint32_t lane = 0; lane < traces::warp_lanes; ++lane) {
+        const std::uint32_t p = warp * traces::warp_lanes + lane;
+        out.lane[lane] = {p % width_, p / width_, sample};
+        if (p < width_ * height_ && sample < spp_) out.mask |= 1U << lane;
+    }
+    return out;
+}
+
 WarpJobs LaunchGrid::jobs(std::uint32_t warp, std::uint32_t first_sample) const {
+    if (map_ == ThreadMap::rows) return row_jobs(warp, first_sample);
     const std::uint32_t pass = warp / warps_per_class_;  // which class
     warp %= warps_per_class_;
     const bool one_pixel = map_ == ThreadMap::samples;

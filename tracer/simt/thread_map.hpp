@@ -1,9 +1,13 @@
 // Which (pixel, sample) a lane gets.
 //
-// All maps walk the picture in squares of 16x16 pixels, row by row, and each square in tiles of 8x4 pixels, so that
-// neighbours in dispatch order are neighbours in the picture.
+// All maps but `rows` walk the picture in squares of 16x16 pixels, row by row, and each square in tiles of 8x4 pixels,
+// so that neighbours in dispatch order are neighbours in the picture.
 //   tile     a warp = the 32 pixels of one tile, one sample index. A launch is one sample index of every pixel.
 //   samples  a warp = one pixel, 32 consecutive sample indices. A launch is 32 sample indices of every pixel.
+//   rows     a warp = 32 pixels of a row, one sample index; warps follow one another along the row, and the last warp
+//            of a row goes on at the beginning of the next. A launch is one sample index of every pixel. As Blender
+//            Cycles has it where the scrambling distance is below 0.9 (work stealing of kernel/integrator), where its
+//            work tile is the whole picture.
 //   classes  pixels fall into m x m classes (x mod m, y mod m). The pixels of a class, a picture of its own, are
 //            walked as `tile` walks the whole; class (0,0) first, then (1,0), … so that each is a coherent pass, one behind the
 //            other in the launch. A launch is one sample index of every pixel. m need not divide the picture's size:
@@ -20,7 +24,7 @@
 
 namespace raycache::tracer {
 
-enum class ThreadMap { tile, samples, classes };
+enum class ThreadMap { tile, samples, rows, classes };
 
 struct ThreadMapEntry {
     ThreadMap map;
@@ -59,6 +63,8 @@ public:
     std::uint32_t samples_per_launch() const { return map_ == ThreadMap::samples ? traces::warp_lanes : 1; }
 
 private:
+    WarpJobs row_jobs(std::uint32_t warp, std::uint32_t sample) const;
+
     ThreadMap map_;
     std::uint32_t width_, height_;
     std::uint32_t interleave_;  ///< m of `classes`, else 1: one class

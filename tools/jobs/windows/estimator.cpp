@@ -36,8 +36,10 @@ Estimator::Estimator(const tracer::PreparedScene& scene, const std::vector<Windo
         sizes_.timed_windows = std::min(sizes_.timed_windows, sizes_.windows);
         blocks = static_cast<std::uint32_t>(settings.window_count / sizes_.windows);
     }
+    const std::uint32_t grain = common_indices(strategies);
     for (const WindowedStrategy& strategy : strategies) {
-        Case& c = cases_.emplace_back(Case{make_case(scene, strategy, sizes_, choice.drawing, blocks), {}, {}, {}});
+        Case& c =
+            cases_.emplace_back(Case{make_case(scene, strategy, sizes_, choice.drawing, blocks, grain), {}, {}, {}});
         if (!findings) continue;
         c.depth = std::make_unique<cachesim::ElementDepth>(c.capture->header().regions);
         c.findings.resize(gpus.size());

@@ -11,7 +11,7 @@ tracer::LaunchGrid launch_grid_of(const tracer::CaptureSettings& s) {
 LaunchExtent extent_of(const tracer::CaptureSettings& s) {
     const tracer::LaunchGrid grid = launch_grid_of(s);
     const std::uint32_t each = grid.samples_per_launch();
-    return {static_cast<std::uint32_t>((s.strategy.samples.spp + each - 1) / each), grid.warps(), each};
+    return {static_cast<std::uint32_t>((s.strategy.samples.spp + each - 1) / each), grid.warps(), each, 0};
 }
 
 }  // namespace raycache::tools

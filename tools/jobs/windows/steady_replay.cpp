@@ -31,7 +31,7 @@ std::uint32_t warm_up(const LaunchExtent& of, std::uint32_t wave) {
 std::uint32_t rounds_of(const LaunchExtent& of, std::uint32_t wave) {
     const std::uint64_t warps = std::uint64_t{of.launches} * of.warps;
     return static_cast<std::uint32_t>(
-        std::max<std::uint64_t>(1, (std::uint64_t{counted_waves} * wave + warps - 1) / warps));
+        std::max<std::uint64_t>({1, of.rounds, (std::uint64_t{counted_waves} * wave + warps - 1) / warps}));
 }
 
 /// Warps that a replay takes in all.
@@ -130,8 +130,12 @@ SteadyState replay_steady(const tracer::PreparedScene& scene, const std::vector<
     tbb::parallel_for(
         std::size_t{0}, counts.size(),
         [&](std::size_t task) {
+            const cachesim::Gpu& gpu = gpus[task % gpus.size()];
             const std::size_t s = task / gpus.size();
-            counts[task] = replay_all(*captures[s], gpus[task % gpus.size()], extents[s], stage);
+            LaunchExtent extent = extents[s];  // all strategies as many rounds: a map may leave more lanes idle
+            for (const LaunchExtent& other : extents)
+                extent.rounds = std::max(extent.rounds, rounds_of(other, wave_warps(gpu)));
+            counts[task] = replay_all(*captures[s], gpu, extent, stage);
         },
         tbb::simple_partitioner());
 
@@ -142,7 +146,7 @@ SteadyState replay_steady(const tracer::PreparedScene& scene, const std::vector<
         const std::size_t s = task / gpus.size();
         const cachesim::Gpu& gpu = gpus[task % gpus.size()];
         LaunchSource source = sources[s];
-        source.strategy.thread_map = strategies[s].thread_map;
+        source.strategy.take_from(strategies[s].given);
         cachesim::Series& counted = all.traffic.emplace_back(cachesim::Series{origin_of(source, gpu), {}});
         cachesim::WindowSample& windows = counted.windows.emplace();
         windows.blocks = 1;

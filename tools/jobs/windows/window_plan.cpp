@@ -42,11 +42,15 @@ std::vector<WindowPlace> stratified(RandomStream& random, std::uint32_t count, s
 }  // namespace
 
 WindowPlan::WindowPlan(std::uint64_t spp, std::uint32_t warps, std::uint32_t indices_per_launch, std::uint64_t seed,
-                       const WindowSizes& sizes)
-    : seed_(seed), sizes_(sizes), warps_(warps), indices_per_launch_(indices_per_launch) {
-    const std::uint64_t all = std::max<std::uint64_t>(1, spp / indices_per_launch);
-    launches_ = block_length(all, sizes.indices / indices_per_launch);
-    blocks_ = all / launches_;
+                       const WindowSizes& sizes, std::uint32_t grain)
+    : seed_(seed), sizes_(sizes), warps_(warps) {
+    if (grain == 0) grain = indices_per_launch;
+    const std::uint64_t all = std::max<std::uint64_t>(1, spp / grain);
+    const std::uint32_t length = block_length(all, sizes.indices / grain);
+    blocks_ = all / length;
+    block_indices_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t{length} * grain, spp));
+    indices_per_launch_ = std::min(indices_per_launch, block_indices_);
+    launches_ = block_indices_ / indices_per_launch_;
 }
 
 std::vector<std::uint32_t> WindowPlan::draw(std::size_t count) const {
@@ -57,7 +61,7 @@ std::vector<std::uint32_t> WindowPlan::draw(std::size_t count) const {
         if (drawn.size() == blocks_) drawn.clear();
         const std::uint64_t block = random.below(blocks_);
         if (!drawn.insert(block).second) continue;
-        first.push_back(static_cast<std::uint32_t>(block * launches_ * indices_per_launch_));
+        first.push_back(static_cast<std::uint32_t>(block * block_indices_));
     }
     return first;
 }

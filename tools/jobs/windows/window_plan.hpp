@@ -8,6 +8,9 @@
 //
 // Places are stratified: the picture, in launch order, is cut into as many equal parts as there are places, each gets
 // one, at random within it; and each index of the block gets as many of them as any other.
+//
+// All places are of as many warps, and so of as many paths, whatever the thread map: 256 paths at a place of work are a
+// square of 256 pixels, 256 pixels of a row, or 32 sample indices of 8 pixels.
 #pragma once
 
 #include <cstdint>
@@ -45,14 +48,17 @@ struct BlockPlan {
 
 class WindowPlan {
 public:
-    /// `spp`: N. `warps`: of a launch, which has `indices_per_launch` sample indices. Throws nothing.
+    /// `spp`: N. `warps`: of a launch, which has `indices_per_launch` sample indices. `grain`: blocks are of multiples
+    /// of so many indices (0: of as many as a launch has), so that strategies whose launches differ can have the same
+    /// blocks. Throws nothing.
     WindowPlan(std::uint64_t spp, std::uint32_t warps, std::uint32_t indices_per_launch, std::uint64_t seed,
-               const WindowSizes& = {});
+               const WindowSizes& = {}, std::uint32_t grain = 0);
 
     /// Launches of a block: of neighbouring sample indices, indices_per_launch each.
     std::uint32_t launches() const { return launches_; }
     /// Different blocks that there are.
     std::uint64_t blocks() const { return blocks_; }
+    /// Below N: N may be less than what a launch has room for.
     std::uint32_t indices_per_launch() const { return indices_per_launch_; }
 
     /// The first sample index of each of the first `count` blocks that are drawn.
@@ -65,6 +71,7 @@ private:
     WindowSizes sizes_;
     std::uint32_t warps_, indices_per_launch_, launches_;
     std::uint64_t blocks_;
+    std::uint32_t block_indices_;
 };
 
 }  // namespace raycache::tools

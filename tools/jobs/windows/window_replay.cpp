@@ -164,6 +164,11 @@ void replay_windows(WarpStream& stream, const BlockPlan& plan, std::vector<GpuWi
     }
 }
 
+/// What makes one sample index of every pixel of so many traced warps.
+double picture_share(const WarpStream& stream, const WindowPlan& windows, std::uint64_t traced) {
+    return static_cast<double>(stream.warps()) / static_cast<double>(traced) / windows.indices_per_launch();
+}
+
 }  // namespace
 
 std::uint32_t wave_warps(const cachesim::Gpu& gpu) {
@@ -195,7 +200,7 @@ std::vector<BlockResult> replay_block(const tracer::Capture& capture, std::uint3
     fill_caches(stream, plan, replays);
     replay_windows(stream, plan, replays);
 
-    const double scale = static_cast<double>(stream.warps()) / static_cast<double>(traced);
+    const double scale = picture_share(stream, windows, traced);
     std::vector<BlockResult> results;
     for (std::size_t g = 0; g < gpus.size(); ++g) {
         BlockResult& result = results.emplace_back(replays[g].finish());
@@ -217,8 +222,7 @@ std::vector<double> count_issue_cycles(const tracer::Capture& capture, std::uint
         for (IssueWork& of_gpu : issued) of_gpu.add(warp);
     });
     std::vector<double> cycles;
-    for (const IssueWork& of_gpu : issued)
-        cycles.push_back(of_gpu.cycles() * static_cast<double>(stream.warps()) / static_cast<double>(traced));
+    for (const IssueWork& of_gpu : issued) cycles.push_back(of_gpu.cycles() * picture_share(stream, windows, traced));
     return cycles;
 }
 

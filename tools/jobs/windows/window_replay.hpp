@@ -1,5 +1,5 @@
-// One block of sample indices of one strategy: traced in places, replayed in windows, told as one launch of the steady
-// state.
+// One block of sample indices of one strategy: traced in places, replayed in windows, told as one sample index of every
+// pixel in the steady state, whatever a launch of the thread map holds.
 //
 // A window is a run of neighbouring warps in launch order, at any place of any index of the block. Before it a
 // warm-up is replayed and not counted; behind the last one more wave, so that nothing drains while anything is counted.

@@ -16,10 +16,12 @@ namespace raycache::tools {
 
 struct WindowedStrategy {
     tracer::CaptureSettings capture;
-    std::optional<std::string> thread_map;  ///< as the user named it, for tables
+    tracer::StrategyName given;  ///< as the user named it, for tables
     std::string layout = tracer::default_layout;
 };
 std::vector<WindowedStrategy> strategies_of(const LaunchSettings&);
+/// Sample indices that blocks of all of them are multiples of: as many as the largest launch has.
+std::uint32_t common_indices(const std::vector<WindowedStrategy>&);
 
 struct WindowedCase {
     std::string name;
@@ -32,8 +34,8 @@ struct WindowedCase {
     Json subject(std::uint32_t blocks) const;
 };
 
-/// `drawing`: another number, other blocks and places of the same samples.
+/// `drawing`: another number, other blocks and places of the same samples. `grain`: common_indices() of all strategies.
 WindowedCase make_case(const tracer::PreparedScene&, const WindowedStrategy&, const WindowSizes&, std::uint64_t drawing,
-                       std::uint32_t blocks);
+                       std::uint32_t blocks, std::uint32_t grain);
 
 }  // namespace raycache::tools
