@@ -119,7 +119,8 @@ TEST_CASE("A capture job writes the trace that a replay job reads, with the coun
     const auto launches = test::small_launches({"owen"});
     tools::Observer silent;
     const std::string trace = folder + "/owen.rct";
-    const auto captured = run(tools::CaptureJob{launches.scene, launches.sampling, launches.cases[0], trace}, silent);
+    const auto captured =
+        run(tools::CaptureJob{launches.scene, launches.sampling, launches.cases[0], trace, {}}, silent);
     CHECK(captured.warps > 0);
     tools::ReplayJob from_file, on_the_fly;
     from_file.launches.traces = {trace};
