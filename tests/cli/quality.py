@@ -253,7 +253,7 @@ class Quality(QualityTest):
         self.assertIn("worst pair", self.quality("--pairs", "--strategy", "coherent").text)
 
     def test_pictures_show_every_strategy_at_equal_samples_and_at_equal_predicted_time(self):
-        text = self.quality("--strategy", "cranley-patterson,micro-jitter", *GPU, "--output", "a/b").text
+        text = self.quality("--strategy", "cranley-patterson,micro-jitter", *GPU, "--output", "a/b", "--wide").text
         self.assertIn("speed-up", text)
         self.assertIn("N equal time", text)
         names = {p.name for p in self.path("a/b").iterdir()}
