@@ -1,6 +1,13 @@
 #include "tracer/strategy_groups.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "tracer/sampling/decorrelation.hpp"
+#include "tracer/strategy_name.hpp"
+#include "traces/did_you_mean.hpp"
+#include "traces/error.hpp"
 
 namespace raycache::tracer {
 
@@ -22,6 +29,22 @@ const StrategyGroup* find_strategy_group(const std::string& name) {
     return nullptr;
 }
 
+namespace {
+
+/// What is no strategy, but nearly a group, is a misspelt group.
+void refuse_misspelt_group(const std::string& name) {
+    const std::string strategy = parse_strategy_name(name).decorrelation;
+    std::vector<std::string> strategies, groups;
+    for (const DecorrelationEntry& entry : decorrelations()) strategies.push_back(entry.name);
+    if (!closest_name(strategy, strategies).empty()) return;
+    for (const StrategyGroup& group : strategy_groups()) groups.push_back(group.name);
+    if (const std::string hint = did_you_mean(strategy, groups); !hint.empty())
+        throw UsageError(
+            fmt::format("unknown strategy '{}'; expected a strategy or a group of strategies{}", name, hint));
+}
+
+}  // namespace
+
 std::vector<std::string> expand_groups(const std::vector<std::string>& names) {
     std::vector<std::string> all;
     const auto add = [&](const std::string& name) {
@@ -29,10 +52,12 @@ std::vector<std::string> expand_groups(const std::vector<std::string>& names) {
     };
     for (const std::string& name : names) {
         const StrategyGroup* const group = find_strategy_group(name);
-        if (group == nullptr)
+        if (group == nullptr) {
+            refuse_misspelt_group(name);
             add(name);
-        else
+        } else {
             for (const std::string& member : group->members) add(member);
+        }
     }
     return all;
 }

@@ -19,7 +19,7 @@ const std::vector<StrategyGroup>& strategy_groups();
 /// Null for a name that is no group's.
 const StrategyGroup* find_strategy_group(const std::string& name);
 
-/// Each group replaced by its members, in place; no name twice.
+/// Each group replaced by its members, in place; no name twice. Throws UsageError for a misspelt group.
 std::vector<std::string> expand_groups(const std::vector<std::string>& names);
 
 /// The first member of the first group among the names, unless cranley-patterson is among them: that is a baseline

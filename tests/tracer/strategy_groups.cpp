@@ -32,5 +32,11 @@ TEST_CASE("a group in a list stands for its members, each once, and its first is
     CHECK(find_strategy_group("owen") == nullptr);
 }
 
+TEST_CASE("a misspelt group is named, and a misspelt strategy is left to what knows strategies") {
+    CHECK_THROWS_WITH(expand_groups({"cycle"}), Catch::Contains("did you mean 'cycles'?"));
+    CHECK_THROWS_WITH(expand_groups({"coherent", "Cylces@rows"}), Catch::Contains("did you mean 'cycles'?"));
+    CHECK(expand_groups({"oven", "xyz"}) == std::vector<std::string>{"oven", "xyz"});
+}
+
 }  // namespace
 }  // namespace raycache::tracer

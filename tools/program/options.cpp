@@ -52,7 +52,8 @@ Option* add_strategies(Command& command, std::vector<std::string>& strategies, t
     if (groups) help += "; or a group of them (see 'raycache list groups')";
     return command.add_option("--strategy", strategies, help)
         ->check([one = strategy_name_check(parts), groups](std::string& text) {
-            if (!groups || !tracer::find_strategy_group(text)) one(text);
+            if (groups && tracer::expand_groups({text}) != std::vector{text}) return;
+            one(text);
         })
         ->about_scene();
 }

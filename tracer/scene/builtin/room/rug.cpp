@@ -43,8 +43,9 @@ void rug(MeshBuilder& b, std::size_t triangles) {
     const std::size_t rows = (count + columns - 1) / columns;
     const float thick = std::min(0.009F, 0.45F * spacing);
     for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t row = i / columns;
         const float u = (static_cast<float>(i % columns) + random.unit()) / static_cast<float>(columns);
-        const float v = (static_cast<float>(i / columns) + random.unit()) / static_cast<float>(rows);
+        const float v = (static_cast<float>(row) + random.unit()) / static_cast<float>(rows);
         const auto [c, s] = cos_sin(static_cast<double>(random.unit()));
         const float tall = random.in(0.014F, 0.024F);
         const Vec3 lean = random.jitter(0.011F);
