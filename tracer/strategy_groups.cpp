@@ -31,13 +31,18 @@ const StrategyGroup* find_strategy_group(const std::string& name) {
 
 namespace {
 
-/// What is no strategy, but nearly a group, is a misspelt group.
+/// What is no strategy, but nearly a group, is a misspelt group, or one with parts that only strategies have.
 void refuse_misspelt_group(const std::string& name) {
     const std::string strategy = parse_strategy_name(name).decorrelation;
     std::vector<std::string> strategies, groups;
     for (const DecorrelationEntry& entry : decorrelations()) strategies.push_back(entry.name);
     if (!closest_name(strategy, strategies).empty()) return;
     for (const StrategyGroup& group : strategy_groups()) groups.push_back(group.name);
+    if (find_strategy_group(strategy) != nullptr)
+        throw UsageError(
+            fmt::format("strategy '{}': '{}' is a group, whose strategies have their own parameters and "
+                        "thread maps; expected '{}' alone",
+                        name, strategy, strategy));
     if (const std::string hint = did_you_mean(strategy, groups); !hint.empty())
         throw UsageError(
             fmt::format("unknown strategy '{}'; expected a strategy or a group of strategies{}", name, hint));

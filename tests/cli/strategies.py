@@ -149,6 +149,7 @@ class Strategies(ProgramTest):
         self.assertIn("did you mean 'interleave'?", self.refuses(2, *CAPTURE, "--param", "interleaf=5"))
         self.assertIn("NAME=VALUE", self.refuses(2, *CAPTURE, "--param", "mu"))
         self.assertIn("1 to 256", self.refuses(2, *CAPTURE, "--param", "interleave=257"))
+        self.assertIn("found nothing", self.refuses(2, *CAPTURE, "--strategy", "micro-jitter:k="))
         self.assertIn("mu must be a number of 0 or more, found wide", self.refuses(2, *CAPTURE, "--param", "mu=wide"))
 
     def test_a_case_rules_over_a_parameter_by_its_name(self):

@@ -35,6 +35,8 @@ TEST_CASE("a group in a list stands for its members, each once, and its first is
 TEST_CASE("a misspelt group is named, and a misspelt strategy is left to what knows strategies") {
     CHECK_THROWS_WITH(expand_groups({"cycle"}), Catch::Contains("did you mean 'cycles'?"));
     CHECK_THROWS_WITH(expand_groups({"coherent", "Cylces@rows"}), Catch::Contains("did you mean 'cycles'?"));
+    CHECK_THROWS_WITH(expand_groups({"cycles:k=1"}), Catch::Contains("expected 'cycles' alone"));
+    CHECK_THROWS_WITH(expand_groups({"cycles@rows"}), Catch::Contains("expected 'cycles' alone"));
     CHECK(expand_groups({"oven", "xyz"}) == std::vector<std::string>{"oven", "xyz"});
 }
 

@@ -83,11 +83,12 @@ public:
         const cudaError_t status = cudaFuncGetAttributes(&attributes, kernel);
         if (status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidDeviceFunction ||
             status == cudaErrorUnsupportedPtxVersion)
-            throw Error(std::string(properties_.name) + ": expected a device that this program has code for, found "
-                        "compute capability " + std::to_string(properties_.major) + "." +
-                        std::to_string(properties_.minor) + "; build with -DCMAKE_CUDA_ARCHITECTURES=" +
-                        std::to_string(properties_.major) + std::to_string(properties_.minor) +
-                        ", by a CUDA toolkit that knows it");
+            throw Error(std::string(properties_.name) +
+                        ": expected a device that this program has code for, found "
+                        "compute capability " +
+                        std::to_string(properties_.major) + "." + std::to_string(properties_.minor) +
+                        "; build with -DCMAKE_CUDA_ARCHITECTURES=" + std::to_string(properties_.major) +
+                        std::to_string(properties_.minor) + ", by a CUDA toolkit that knows it");
         check(status, "asking for a kernel");
     }
 
@@ -105,8 +106,7 @@ public:
         cudaRuntimeGetVersion(&runtime);
         const auto version = [](int v) { return std::to_string(v / 1000) + "." + std::to_string(v % 1000 / 10); };
         return {{"name", std::string(properties_.name)},
-                {"compute_capability",
-                 std::to_string(properties_.major) + "." + std::to_string(properties_.minor)},
+                {"compute_capability", std::to_string(properties_.major) + "." + std::to_string(properties_.minor)},
                 {"cuda_driver", version(driver)},
                 {"cuda_runtime", version(runtime)},
                 {"sms", static_cast<double>(properties_.multiProcessorCount)},

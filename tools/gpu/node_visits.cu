@@ -1,8 +1,8 @@
 // What a visit to a node costs a GPU: one kernel for each BVH layout, which makes VISITS visits one after the other.
-// Nothing here is run; tools/gpu/visit_instructions compiles each kernel with different VISITS and compares how long the
-// machine code is. A visit does what the layout's lane does (tracer/bvh/layouts/): it loads the node, tests the boxes
-// against the ray, and works out where to go and what to push, without a branch, as compilers make it of such code.
-// Loads are counted by the front end of the model and left out of the figures.
+// Nothing here is run; tools/gpu/visit_instructions compiles each kernel with different VISITS and compares how long
+// the machine code is. A visit does what the layout's lane does (tracer/bvh/layouts/): it loads the node, tests the
+// boxes against the ray, and works out where to go and what to push, without a branch, as compilers make it of such
+// code. Loads are counted by the front end of the model and left out of the figures.
 #include <cstdint>
 
 struct Ray {
@@ -39,7 +39,8 @@ __device__ inline void visit_bvh2(const float4* nodes, std::uint32_t* stack, Lan
     const float4* node = nodes + 4 * std::size_t{lane.current};
     const float4 x = __ldg(node), y = __ldg(node + 1), z = __ldg(node + 2), c = __ldg(node + 3);
     float t0, t1;
-    const bool h0 = slab(lane.ray, x.x, x.z, y.x, y.z, z.x, z.z, t0), h1 = slab(lane.ray, x.y, x.w, y.y, y.w, z.y, z.w, t1);
+    const bool h0 = slab(lane.ray, x.x, x.z, y.x, y.z, z.x, z.z, t0),
+               h1 = slab(lane.ray, x.y, x.w, y.y, y.w, z.y, z.w, t1);
     const std::uint32_t a = __float_as_uint(c.x), b = __float_as_uint(c.y);
     const bool second_first = h1 && (!h0 || t1 < t0);
     push(stack, lane, second_first ? a : b, h0 && h1);
@@ -60,8 +61,8 @@ __device__ inline void order(float& ta, float& tb, std::uint32_t& a, std::uint32
 
 __device__ inline void visit_bvh4(const float4* nodes, std::uint32_t* stack, Lane& lane) {
     const float4* node = nodes + 8 * std::size_t{lane.current};
-    const float4 lx = __ldg(node), ly = __ldg(node + 1), lz = __ldg(node + 2), ux = __ldg(node + 3), uy = __ldg(node + 4),
-                 uz = __ldg(node + 5), c = __ldg(node + 6);
+    const float4 lx = __ldg(node), ly = __ldg(node + 1), lz = __ldg(node + 2), ux = __ldg(node + 3),
+                 uy = __ldg(node + 4), uz = __ldg(node + 5), c = __ldg(node + 6);
     float t[4];
     std::uint32_t ref[4] = {__float_as_uint(c.x), __float_as_uint(c.y), __float_as_uint(c.z), __float_as_uint(c.w)};
     const bool h0 = slab(lane.ray, lx.x, ux.x, ly.x, uy.x, lz.x, uz.x, t[0]),
@@ -92,7 +93,8 @@ __device__ inline float byte_of(std::uint32_t four, int i) { return static_cast<
 __device__ inline void visit_cwbvh8(const float4* nodes, std::uint64_t* stack, Lane& lane, std::uint32_t octant,
                                     std::uint32_t& triangles) {
     const float4* node = nodes + 5 * std::size_t{lane.current};
-    const float4 n0 = __ldg(node), n1 = __ldg(node + 1), n2 = __ldg(node + 2), n3 = __ldg(node + 3), n4 = __ldg(node + 4);
+    const float4 n0 = __ldg(node), n1 = __ldg(node + 1), n2 = __ldg(node + 2), n3 = __ldg(node + 3),
+                 n4 = __ldg(node + 4);
     const std::uint32_t e = __float_as_uint(n0.w);
     // The ray in steps of the node's grid, and by the signs of its direction which planes are near, as in Ylitie et al.
     // 2017.
@@ -108,9 +110,12 @@ __device__ inline void visit_cwbvh8(const float4* nodes, std::uint64_t* stack, L
 #pragma unroll
     for (int half = 0; half < 2; ++half) {
         const std::uint32_t meta = __float_as_uint(half == 0 ? n1.z : n1.w);
-        const std::uint32_t lx = __float_as_uint(half == 0 ? n2.x : n2.y), ly = __float_as_uint(half == 0 ? n2.z : n2.w),
-                            lz = __float_as_uint(half == 0 ? n3.x : n3.y), ux = __float_as_uint(half == 0 ? n3.z : n3.w),
-                            uy = __float_as_uint(half == 0 ? n4.x : n4.y), uz = __float_as_uint(half == 0 ? n4.z : n4.w);
+        const std::uint32_t lx = __float_as_uint(half == 0 ? n2.x : n2.y),
+                            ly = __float_as_uint(half == 0 ? n2.z : n2.w),
+                            lz = __float_as_uint(half == 0 ? n3.x : n3.y),
+                            ux = __float_as_uint(half == 0 ? n3.z : n3.w),
+                            uy = __float_as_uint(half == 0 ? n4.x : n4.y),
+                            uz = __float_as_uint(half == 0 ? n4.z : n4.w);
         const std::uint32_t nx = sx ? ux : lx, fx = sx ? lx : ux, ny = sy ? uy : ly, fy = sy ? ly : uy,
                             nz = sz ? uz : lz, fz = sz ? lz : uz;
         // Of all four: which are nodes, and where the bits of each go.

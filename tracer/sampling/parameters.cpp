@@ -29,8 +29,8 @@ std::string range_text(const ParameterEntry& entry) {
 }
 
 [[noreturn]] void refuse(const ParameterEntry& entry, const std::string& found) {
-    throw UsageError(fmt::format("{}: {} must be {}, found {}: {}", entry.topic, entry.label, range_text(entry), found,
-                                 entry.remedy));
+    throw UsageError(fmt::format("{}: {} must be {}, found {}: {}", entry.topic, entry.label, range_text(entry),
+                                 found.empty() ? "nothing" : found, entry.remedy));
 }
 
 template <class Number>

@@ -86,34 +86,43 @@ std::vector<Series> measure_bandwidths(const CudaDevice& device, bool quick) {
     check(cudaMemset(from.data(), 0, large), "clearing a buffer");
     std::vector<Series> all;
 
-    Series l1{"bandwidth of L1", "footprint of an SM in bytes", "bytes a second, all SMs",
-              "one CTA of 1024 threads an SM, each reads its own buffer over and over, 16 B a thread", {}};
+    Series l1{"bandwidth of L1",
+              "footprint of an SM in bytes",
+              "bytes a second, all SMs",
+              "one CTA of 1024 threads an SM, each reads its own buffer over and over, 16 B a thread",
+              {}};
     for (const std::uint64_t bytes : {16 * kib, 32 * kib, 64 * kib, 96 * kib}) {
         const std::uint32_t rounds = static_cast<std::uint32_t>(64 * mib / bytes);
         const double s = seconds_of([&] {
-            read_rounds<false><<<sms, block_threads>>>(from.as<uint4>(), bytes / 16, bytes / 16, rounds,
-                                                       sink.as<std::uint32_t>());
+            read_rounds<false>
+                <<<sms, block_threads>>>(from.as<uint4>(), bytes / 16, bytes / 16, rounds, sink.as<std::uint32_t>());
         });
         l1.points.push_back({static_cast<double>(bytes), static_cast<double>(bytes) * rounds * sms / s});
     }
     all.push_back(l1);
 
-    Series l2{"bandwidth of L2", "footprint in bytes", "bytes a second, all SMs",
-              "two CTAs of 1024 threads an SM, all read one buffer past L1, 16 B a thread", {}};
+    Series l2{"bandwidth of L2",
+              "footprint in bytes",
+              "bytes a second, all SMs",
+              "two CTAs of 1024 threads an SM, all read one buffer past L1, 16 B a thread",
+              {}};
     for (std::uint64_t bytes = 256 * kib; bytes <= 128 * mib; bytes *= 2) {
         const std::uint64_t part = std::max<std::uint64_t>(bytes / (2 * sms) / 16, 1);
         const std::uint32_t rounds = static_cast<std::uint32_t>(std::max<std::uint64_t>(mib / (part * 16), 4));
         const double s = seconds_of([&] {
-            read_rounds<true><<<2 * sms, block_threads>>>(from.as<uint4>(), part, part, rounds,
-                                                          sink.as<std::uint32_t>());
+            read_rounds<true>
+                <<<2 * sms, block_threads>>>(from.as<uint4>(), part, part, rounds, sink.as<std::uint32_t>());
         });
         l2.points.push_back({static_cast<double>(bytes), static_cast<double>(part * 16) * rounds * 2 * sms / s});
     }
     all.push_back(l2);
 
     const std::uint64_t words = large / 16;
-    Series dram{"bandwidth of DRAM", "0 read, 1 written, 2 copied (both directions counted)", "bytes a second",
-                "streams over a buffer that is far larger than L2, 16 B a thread; the copy is the driver's", {}};
+    Series dram{"bandwidth of DRAM",
+                "0 read, 1 written, 2 copied (both directions counted)",
+                "bytes a second",
+                "streams over a buffer that is far larger than L2, 16 B a thread; the copy is the driver's",
+                {}};
     dram.points.push_back({0, static_cast<double>(large) / seconds_of([&] {
                                   read_all<<<4 * sms, 512>>>(from.as<uint4>(), words, sink.as<std::uint32_t>());
                               })});

@@ -40,8 +40,11 @@ Series near_and_far(Chaser& chaser) {
     chaser.load(random_list(places, bytes / 4));
     const auto lines = static_cast<std::uint32_t>(places.size());
     const auto result = chaser.run(Way::l2, lines, lines, 0, true);
-    Series series{"latency of L2, line by line", "share of lines", "cycles, at most",
-                  "one SM, 2 MiB read once before: quantiles over lines; two plateaus are a near and a far half", {}};
+    Series series{"latency of L2, line by line",
+                  "share of lines",
+                  "cycles, at most",
+                  "one SM, 2 MiB read once before: quantiles over lines; two plateaus are a near and a far half",
+                  {}};
     for (int i = 1; i < 40; ++i) {
         const double share = i / 40.0;
         series.points.push_back({share, result.each[static_cast<std::size_t>(share * static_cast<double>(lines))]});
@@ -51,8 +54,11 @@ Series near_and_far(Chaser& chaser) {
 
 /// Share of loads that miss L1, over footprints in fine steps.
 Series l1_edge(Chaser& chaser, double limit, bool quick) {
-    Series series{"misses of L1", "footprint in bytes", "share of loads slower than half way to L2",
-                  "one thread, lines of 128 B in random order, three rounds before", {}};
+    Series series{"misses of L1",
+                  "footprint in bytes",
+                  "share of loads slower than half way to L2",
+                  "one thread, lines of 128 B in random order, three rounds before",
+                  {}};
     for (std::uint64_t size = 8 * kib; size <= 272 * kib; size += (quick ? 16 : 4) * kib) {
         const auto places = strided(size, line);
         chaser.load(random_list(places, size / 4));
@@ -64,8 +70,11 @@ Series l1_edge(Chaser& chaser, double limit, bool quick) {
 
 /// How many lines, each so many bytes behind the one before, L1 holds.
 Series conflicts(Chaser& chaser, double limit) {
-    Series series{"lines that L1 holds at a stride", "stride in bytes", "lines, the most that do not miss",
-                  "one thread, two rounds before; up to 2048 lines, 64 MiB: powers of two, then halving", {}};
+    Series series{"lines that L1 holds at a stride",
+                  "stride in bytes",
+                  "lines, the most that do not miss",
+                  "one thread, two rounds before; up to 2048 lines, 64 MiB: powers of two, then halving",
+                  {}};
     for (std::uint64_t stride = line; stride <= mib; stride *= 2) {
         const std::uint64_t most = std::min<std::uint64_t>(2048, 64 * mib / stride);
         const auto misses = [&](std::uint64_t lines) {
@@ -93,7 +102,8 @@ Series conflicts(Chaser& chaser, double limit) {
 /// the sector `n` of it. Median cycles of the second.
 Series fill(Chaser& chaser, Way way) {
     Series series{way == Way::l1 ? "a sector behind a miss, through L1" : "a sector behind a miss, past L1",
-                  "sector of the 256 B block whose first was read just before", "median cycles",
+                  "sector of the 256 B block whose first was read just before",
+                  "median cycles",
                   way == Way::l1 ? "as fast as L1: a miss of L1 fills it, too; else as fast as L2, or as DRAM"
                                  : "as fast as L2: a miss of L2 fetches it, too; else as fast as DRAM",
                   {}};

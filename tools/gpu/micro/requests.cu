@@ -56,12 +56,16 @@ std::vector<Series> measure_requests(const CudaDevice&) {
         check(cudaMemcpy(&took, cycles.data(), sizeof took, cudaMemcpyDeviceToHost), "loading");
         return static_cast<double>(took) / (warps * loads);
     };
-    Series lines{"cycles of an LDG.128, by lines", "lines of 128 B that a warp's lanes touch",
+    Series lines{"cycles of an LDG.128, by lines",
+                 "lines of 128 B that a warp's lanes touch",
                  "cycles of the SM for each load of a warp",
-                 "8 warps, L1 holds all; each line in one sector of 32 B, which lanes share in runs", {}};
-    Series sectors{"cycles of an LDG.128, by sectors", "sectors of 32 B that a warp's lanes touch",
+                 "8 warps, L1 holds all; each line in one sector of 32 B, which lanes share in runs",
+                 {}};
+    Series sectors{"cycles of an LDG.128, by sectors",
+                   "sectors of 32 B that a warp's lanes touch",
                    "cycles of the SM for each load of a warp",
-                   "8 warps, L1 holds all; sectors follow each other, lanes share them in runs", {}};
+                   "8 warps, L1 holds all; sectors follow each other, lanes share them in runs",
+                   {}};
     for (std::uint32_t n = 1; n <= lanes; n *= 2) {
         std::vector<std::uint32_t> of_lines(lanes), of_sectors(lanes);
         for (std::uint32_t l = 0; l < lanes; ++l) {
@@ -71,8 +75,11 @@ std::vector<Series> measure_requests(const CudaDevice&) {
         lines.points.push_back({static_cast<double>(n), run(of_lines)});
         sectors.points.push_back({static_cast<double>(n), run(of_sectors)});
     }
-    Series dense{"cycles of an LDG.128, dense", "lanes with a 16 B word of their own, the others share the last",
-                 "cycles of the SM for each load of a warp", "8 warps, L1 holds all; words follow each other", {}};
+    Series dense{"cycles of an LDG.128, dense",
+                 "lanes with a 16 B word of their own, the others share the last",
+                 "cycles of the SM for each load of a warp",
+                 "8 warps, L1 holds all; words follow each other",
+                 {}};
     for (std::uint32_t n = 1; n <= lanes; n *= 2) {
         std::vector<std::uint32_t> offsets(lanes);
         for (std::uint32_t l = 0; l < lanes; ++l) offsets[l] = std::min(l, n - 1) * 16;

@@ -128,11 +128,13 @@ private:
     void launch_of() {
         if (warps_ == 0) return;
         const std::uint32_t blocks = (warps_ + options_.block_warps - 1) / options_.block_warps;
-        const WalkInput in{nodes_.data(), triangles_.data(), rays_.as<PackedRay>(),
+        const WalkInput in{nodes_.data(),
+                           triangles_.data(),
+                           rays_.as<PackedRay>(),
                            {hole_firsts_.as<std::uint32_t>(), hole_triangles_.as<std::uint32_t>()}};
         const PlanInput plan{batches_.as<Batch>(), firsts_.as<std::uint32_t>(), warps_};
-        walk_rays<Tree, counting><<<blocks, options_.block_warps * lanes>>>(in, plan, hits_.as<Hit>(),
-                                                                            visits_.as<unsigned long long>());
+        walk_rays<Tree, counting>
+            <<<blocks, options_.block_warps * lanes>>>(in, plan, hits_.as<Hit>(), visits_.as<unsigned long long>());
         check(cudaGetLastError(), "launching the walk; fewer --block-warps need fewer registers");
     }
 
