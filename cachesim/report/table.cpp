@@ -59,8 +59,12 @@ std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& 
 template <class Columns>
 std::vector<std::vector<std::string>> titles_of(const Columns& columns, bool broken) {
     std::vector<std::vector<std::string>> titles;
-    for (const auto& column : columns)
-        titles.push_back(broken ? two_lines(column.title) : std::vector<std::string>{column.title});
+    for (const auto& column : columns) {
+        if (broken)
+            titles.push_back(two_lines(column.title));
+        else
+            titles.push_back({column.title});
+    }
     return titles;
 }
 
